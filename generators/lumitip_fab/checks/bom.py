@@ -27,6 +27,7 @@ READS = (
     "holder/*.stl",
     "flange/*.stl",
     "fit/*.stl",
+    "gauge/*.stl",
     "mask/*.stl",
     "mould/*_casting.md",
     "wiring/cables.csv",

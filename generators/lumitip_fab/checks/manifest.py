@@ -31,7 +31,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     note = ", ".join(changed[:3]) or f"of {len(recorded.files)}"
     yield Measurement("manifest.files", _FILE, len(changed), 0, 0, "missing or changed", note)
     for path, entry in sorted(recorded.files.items()):
-        placed = path.startswith(("backing/", "interface/", "mould/", "mask/"))
+        placed = path.startswith(("backing/", "interface/", "mould/", "mask/", "gauge/"))
         if path.endswith(".stl") and placed and entry.frame:
             yield _frame(outputs, path, np.array(entry.to_sensor), design)
 
@@ -76,6 +76,10 @@ def _apart(path: str, low: Vector, high: Vector, design: Design) -> Iterator[flo
     elif path.startswith("mask/"):
         yield from (abs(high[2]), abs(low[2] + design.mask.sheet.thickness_mm))
         yield max(tip_y - high[1], 0.0)
+    for card in design.gauge_cards:
+        if path == card.file:
+            yield from (abs(high[2] - card.gap_mm), abs(low[2] + card.rail_mm))
+            yield from (abs(low[1] - card.low_y_mm), abs(high[1] - card.high_y_mm))
     for holder in design.holders:
         if path == f"holder/{holder.name}.stl":
             yield abs(high[2] - holder.top_z_mm)

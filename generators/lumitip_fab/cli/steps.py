@@ -45,6 +45,7 @@ STEPS = (
     Step("mask_sheet", "parts.sheet.sheet_files", "fingers", heavy=True, tools=(*_CAD, *_MANIFOLD)),
     Step("coupon", "parts.coupon.coupon_files", tools=_SHEET),
     Step("fit_plate", "parts.fit_plate.fit_plate_files", heavy=True, tools=_CAD),
+    Step("gauge_card", "parts.gauge_card.gauge_card_files", "gauge_cards", heavy=True, tools=_CAD),
     Step("system", "scenes.system.system_files", late=True, tools=_DRAWN),
     Step("work", "scenes.work.work_views", late=True, tools=_DRAWN),
     Step("casting", "docs.casting.casting_files", late=True),

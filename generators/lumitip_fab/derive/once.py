@@ -25,6 +25,7 @@ from lumitip_fab.derive.making import mask, mould
 from lumitip_fab.derive.making.clamp import derive_clamps
 from lumitip_fab.derive.making.consumables import derive_consumables
 from lumitip_fab.derive.making.fit_plate import derive_fit_plate
+from lumitip_fab.derive.making.gauge_card import derive_gauge_cards
 from lumitip_fab.derive.making.panels import derive_panels
 from lumitip_fab.derive.making.printing import derive_heat, derive_slicing
 from lumitip_fab.derive.making.purchase import derive_purchase
@@ -124,6 +125,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     fingers = plan.emitter, plan.receiver
     keys = derive_keys(config, body, casting)
     clamps = derive_clamps(config, body, fingers, keys, casting, printing, cabling)
+    cards = derive_gauge_cards(config, body, fingers, cells, casting, printing)
     assembled = Assembled(
         fingers,
         plan.board,
@@ -176,6 +178,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
             mask=replace(sheet, shift=known_mask_shift(config, layout)),
             mould=casting,
             clamps=clamps,
+            gauge_cards=cards,
             printing=printing,
             heat=heat,
             slicing=slicing,

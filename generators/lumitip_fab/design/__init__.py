@@ -38,6 +38,7 @@ from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 from lumitip_fab.design.clamp import Clamp
 from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.design.fit_plate import FitPlate, Fits, PocketCorner
+from lumitip_fab.design.gauge_card import GaugeCard, Target
 from lumitip_fab.design.holder import Holder
 from lumitip_fab.design.insert import Insert
 from lumitip_fab.design.making import (
@@ -137,6 +138,8 @@ class Design:
     mould: Mould
     clamps: tuple[Clamp, ...]
     """Holds a finger in its mould, alike for both fingers; none where there is no room for it."""
+    gauge_cards: tuple[GaugeCard, ...]
+    """The card by which a pair is accepted; none of compliant fingers or without room for it."""
     printing: Printing
     heat: tuple[HeatStep, ...]
     """Every step that heats something, in the order of work."""

@@ -27,6 +27,7 @@ from lumitip_fab.design import (
     Clamp,
     Closing,
     Flange,
+    GaugeCard,
     Holder,
     Mould,
     Mount,
@@ -108,6 +109,26 @@ def clamp_bed_to_sensor(stack: Stack, clamp: Clamp) -> Matrix:
     """From the print bed of a clamp, on which its flat back lies, to the sensor frame of a finger
     that it holds."""
     return translation(0.0, 0.0, stack.back_z_mm - clamp.foot_mm - clamp.thickness_mm)
+
+
+def gauge_bed_to_sensor(card: GaugeCard) -> Matrix:
+    """From the bed of a gauge card, on which its blade lies, to the sensor frame of the finger that
+    its end E hugs."""
+    return translation(0.0, 0.0, card.gap_mm) @ rotation_y(180.0)
+
+
+def gauge_ends(card: GaugeCard) -> dict[str, Matrix]:
+    """From the sensor frame of the finger that end E of a gauge card hugs, to that with the edge
+    or the strip on the finger: end S is half a turn about z away."""
+    half_turn = translation(0.0, 2 * card.middle_y_mm, 0.0) @ np.diag([-1.0, -1.0, 1.0, 1.0])
+    return {"edge": np.eye(4), "strip": half_turn}
+
+
+def gauge_to_receiver(card: GaugeCard, on: str) -> Matrix:
+    """From the sensor frame of the finger that a gauge card hugs to the receiver's, both fingers on
+    its frame."""
+    turned = translation(0.0, 0.0, card.gap_mm) @ np.diag([-1.0, 1.0, -1.0, 1.0])
+    return turned if on == "emitter" else np.eye(4)
 
 
 def holder_bed_to_auxiliary(holder: Holder) -> Matrix:

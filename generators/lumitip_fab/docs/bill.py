@@ -65,7 +65,7 @@ def electronics(design: Design, files: Files) -> Iterator[Bought]:
     yield Bought("boards", item, "", "", where_text, placed, purchase.placing_each)
 
 
-PRINTED = ("backing", "interface", "mould", "holder", "flange", "fit")
+PRINTED = ("backing", "interface", "mould", "holder", "flange", "fit", "gauge")
 """Folders of printed parts, in the order of the bill; a printed mask is the last."""
 
 
