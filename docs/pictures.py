@@ -64,6 +64,8 @@ def main(out: Path, integrated: Path, flex: Path) -> None:
         draw(clamped, IMAGES / "clamp.png", (-0.7, 1, 0.9), (0, 0, 1))
     plate = actor(out / "fit/fit_plate.stl", PLASTIC)
     draw([plate], IMAGES / "fit_plate.png", (0.3, -0.9, 0.9), (0, 0, 1), FLAT)
+    for card in out.glob("gauge/*.stl"):
+        draw([actor(card, PLASTIC)], IMAGES / "gauge_card.png", (0.3, -0.9, 0.9), (0, 0, 1), FLAT)
     for side in ("receiver", "emitter"):
         page = pypdfium2.PdfDocument(out / f"mask/{side}_mask_a4.pdf")[0]
         page.render(scale=110 / 72).to_pil().convert("L").save(

@@ -13,7 +13,7 @@ from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design.encoding import read_design
 
-_NEEDED = ("boards", "backing", "mould", "holder", "flange", "fit", "wiring")
+_NEEDED = ("boards", "backing", "mould", "holder", "flange", "fit", "gauge", "wiring")
 
 
 @pytest.fixture

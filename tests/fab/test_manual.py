@@ -21,6 +21,7 @@ _NEEDED = (
     "firmware",
     "fit",
     "flange",
+    "gauge",
     "holder",
     "manual",
     "mask",

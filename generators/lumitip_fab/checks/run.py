@@ -40,6 +40,7 @@ MODULES = (
     "insert",
     "wrap",
     "clamp",
+    "gauge_card",
     "assembly",
     "board",
     "models",

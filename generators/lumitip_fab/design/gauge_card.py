@@ -82,7 +82,7 @@ class GaugeCard:
     strip: Target
     """On the receiver, with end S there."""
     letter_mm: float
-    """Height of the letters E and S on the frame."""
+    """Height of the letters E and S on the frame; 0 where they have no room."""
     letter_depth_mm: float
 
     @property

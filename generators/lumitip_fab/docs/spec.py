@@ -132,6 +132,7 @@ def rows(design: Design) -> tuple[Row, ...]:
         *channel_rows(design),
         *ambient_rows(design),
         *outside(design),
+        *_of_the_gauge(design),
     )
 
 
@@ -238,6 +239,14 @@ def _of_the_clamp(design: Design) -> Iterator[Row]:
         yield from rows_of("clamp", clamp=clamp, press_n=clamp.pads_n(clamp.thickness_mm))
     if not design.clamps:
         yield from rows_of("no_clamp")
+
+
+def _of_the_gauge(design: Design) -> Iterator[Row]:
+    """The gauge card for acceptance, or why there is none."""
+    for card in design.gauge_cards:
+        yield from rows_of("gauge", card=card, strip_mm=card.strip.width_mm)
+    if not design.gauge_cards:
+        yield from rows_of("no_gauge_flex" if design.interfaces else "no_gauge")
 
 
 def _further(design: Design) -> dict[str, Any]:

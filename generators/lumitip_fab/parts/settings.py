@@ -45,6 +45,9 @@ def _note(design: Design, bends: bool) -> str:
     rows += [(f"mould/{finger}_mould.3mf", "open side up") for finger in _FINGERS]
     for each, how in ((design.clamps, "on its flat back, feet up"), (design.props, "stop up")):
         rows += [(part.file.replace(".stl", ".3mf"), f"{how}; print {MOULDS}") for part in each]
+    rows += [
+        (c.file.replace(".stl", ".3mf"), "rails up; black, opaque") for c in design.gauge_cards
+    ]
     flat = 'on its outer face, for `mask.route = "tpu"`'
     rows += [(f"mask/{name}.3mf", flat) for name in (*(f"{f}_sheet" for f in _FINGERS), "coupon")]
     listed = "\n".join(

@@ -9,6 +9,7 @@ import numpy as np
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.finger.cells import Cells
+from lumitip_fab.derive.finger.outline import BETWEEN
 from lumitip_fab.derive.finger.strength import Body
 from lumitip_fab.design import Box, Finger, GaugeCard, Mould, Printing, Target
 from lumitip_fab.design.gauge_card import NAME
@@ -20,13 +21,14 @@ EDGE_DEG = 12.0  # across rows and columns, so that the edge passes cells at man
 STRIP_DEG = 102.0
 STRIP_SHARE = 0.5  # of the pitch: next to it cells are free
 RAIL_MM = 3.0
+PLATE_MM = 1.0  # of a plate's side, that rails and stop reach beyond the silicone
 WALL_MM = 2.0
 SIDE_PLAY_MM = 0.2
 TIP_PLAY_MM = 0.1  # the card is pushed against the tip
 LIGHT_MM = 2.0  # from holes to the frame, which would reflect light
 SEAT_MM = 3.0  # width of the frame on a face, at least
-BAR_MM = 5.0  # of the frame at the gripper end, with its letter
-LETTER_SHARE = 0.7
+BAR_MM = 6.0  # of the frame at the gripper end, with its letter
+LETTER_SHARE = 0.6  # of that
 LETTER_DEPTH_MM = 0.4
 TIP_INSET_MM = 1.0  # from the corners of the tip edge, where flaps of the film overlap
 LEAST_STOP_MM = 8.0
@@ -56,7 +58,9 @@ def derive_gauge_cards(
     skin = mould.wall_gap_mm + body.stack.film_mm + printing.fit_mm
     wall = max(WALL_MM, printing.min_wall_mm)
     half, stop_y = outline.tip_width_mm / 2 - TIP_INSET_MM, outline.tip_y_mm + skin + TIP_PLAY_MM
-    gap, blade, rail = (_layers(mm, layer) for mm in (GAP_MM, BLADE_MM, RAIL_MM))
+    gap, blade = _layers(GAP_MM, layer), _layers(BLADE_MM, layer)
+    reach = max(RAIL_MM, PLATE_MM - body.stack.face_z_mm)
+    letter = LETTER_SHARE * (window.y_min_mm - low_y)
     low = round(gap - blade, 6)
     pitch = config.parameters.grid.pitch_mm
     width = round(max(STRIP_SHARE * pitch, 2 * printing.min_wall_mm), 6)
@@ -65,7 +69,7 @@ def derive_gauge_cards(
         name=NAME,
         gap_mm=gap,
         blade_mm=blade,
-        rail_mm=rail,
+        rail_mm=round(math.ceil(reach / layer - 1e-9) * layer, 6),
         wall_mm=wall,
         rail_gap_mm=skin + SIDE_PLAY_MM,
         rail_y_max_mm=shoulder[1],
@@ -74,7 +78,7 @@ def derive_gauge_cards(
         low_y_mm=low_y,
         edge=Target("edge on the receiver", "receiver", "edge", 0.0, EDGE_DEG, 0.0, low, gap),
         strip=Target("strip on the receiver", "receiver", "strip", 0.0, STRIP_DEG, width, low, gap),
-        letter_mm=LETTER_SHARE * (window.y_min_mm - low_y),
+        letter_mm=letter if BETWEEN * letter >= printing.min_wall_mm else 0.0,
         letter_depth_mm=_layers(LETTER_DEPTH_MM, layer),
     )
     wide, long = 2 * (shoulder[0] + card.rail_gap_mm + wall), card.high_y_mm - low_y
