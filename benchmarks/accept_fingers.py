@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lumitip.acceptance.gauge import Gauge, Placement
+from lumitip.acceptance.gauge import Gauge
 from lumitip.acceptance.steps import Frames
 from lumitip.frame import Values
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Model
-from lumitip.twin.built import Lines, Piece, Rays
+from lumitip.twin.built import Lines, Rays
 from lumitip.twin.optics import FULL, values_of_drive
 from lumitip_fab.catalogue.tolerances import Tolerances
 from lumitip_fab.tolerance.draws import Draws, built, draw
@@ -26,31 +26,6 @@ STEADY, MOVING = 60, 300
 """Frames of a steady step, and of the sheet that is moved."""
 NOISE = 1.5
 _GAP_SD_MM = 0.1  # of fingers that are closed on the gauge
-
-
-def example_gauge(layout: Layout) -> Gauge:
-    """A gauge as `lumitip-fab` builds it, for the published sensor."""
-    edge, strip = Piece("edge", 0.0, 12.0, 2.2, 3.0), Piece("strip", 0.0, 102.0, 2.2, 3.0, 3.0)
-    return Gauge(
-        layout.design_hash,
-        3.0,
-        (
-            Placement("edge on the receiver", "receiver", edge),
-            Placement("edge on the emitter", "emitter", _turned_over(edge)),
-            Placement("strip on the receiver", "receiver", strip),
-            Placement("strip on the emitter", "emitter", _turned_over(strip)),
-        ),
-    )
-
-
-def _turned_over(piece: Piece) -> Piece:
-    """About the long axis, in a gap of 3 mm; its line runs through the middle."""
-    return replace(
-        piece,
-        angle_deg=-piece.angle_deg if piece.kind == "edge" else 180.0 - piece.angle_deg,
-        low_mm=3.0 - piece.high_mm,
-        high_mm=3.0 - piece.low_mm,
-    )
 
 
 @dataclass(frozen=True)

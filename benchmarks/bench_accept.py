@@ -21,14 +21,16 @@ from pathlib import Path
 import numpy as np
 
 from accept_faults import KINDS, NAMED, drawn, out_of_tolerance
-from accept_fingers import Fault, Workshop, example_gauge
+from accept_fingers import Fault, Workshop
 from accept_second import second_frames
 from common import Goals
+from lumitip.acceptance.gauge import Gauge
 from lumitip.acceptance.verdict import Judge, Verdict
 from lumitip.tasks.bench import workers
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import resolve
 from lumitip_fab.derive.making.tolerances import spreads
+from lumitip_fab.parts.gauge_card import gauge_text
 
 CAUGHT, FALSE = 95.0, 2.0
 GOOD = 8
@@ -43,7 +45,8 @@ class Trials:
     def __init__(self) -> None:
         resolved = resolve(load(PUBLISHED))
         config, self.layout = resolved.config, resolved.design.layout
-        self.gauge = example_gauge(self.layout)
+        [card] = resolved.design.gauge_cards
+        self.gauge = Gauge.from_json(gauge_text(card, self.layout.design_hash))
         self._workshop = Workshop(
             self.layout, self.gauge, config.catalogue.tolerances, spreads(config)
         )
