@@ -25,6 +25,7 @@ FIELDS = {
     "inputs": ("grid.columns", "controller.board", "receiver.multiplexer"),
     "step-down": ("supply.voltage_v", "flange.enabled", "flange.regulator"),
     "module": ("controller.board", "flange.enabled"),
+    "base": ("flange.enabled", "coupling.gripper"),
     "plate": ("tip.edge_mm", "stack.floor_mm"),
     "nut": ("holder.screw", "breakout.hole_mm"),
     "block": ("coupling.gripper", "printer.profile", "printer.fit_mm"),

@@ -177,18 +177,34 @@ def _inputs(values: Values) -> Iterator[str]:
         yield f"inputs: {values.cells} cells, {most} inputs of {values['controller.board']}"
 
 
+def _stands(values: Values) -> bool:
+    """Whether the gripper stands on the coupling of the flange."""
+    gripper = entries("grippers")[values["coupling.gripper"]]
+    return bool(gripper.get("base") == entries("couplings")[values["flange.coupling"]]["base"])
+
+
+def _flanged(values: Values) -> bool:
+    wanted = values["flange.enabled"]
+    return _stands(values) if wanted == "auto" else bool(wanted)
+
+
+def _base(values: Values) -> Iterator[str]:
+    if values["flange.enabled"] is True and not _stands(values):
+        yield f"base: {values['coupling.gripper']} does not stand on {values['flange.coupling']}"
+
+
 def _step_down(values: Values) -> Iterator[str]:
     regulator = values.part("flange.regulator", "regulators")
     made = regulator["output_v"] if regulator else 5.0
-    if values["flange.enabled"] and values["supply.voltage_v"] < made + STEP_DOWN_V:
+    if _flanged(values) and values["supply.voltage_v"] < made + STEP_DOWN_V:
         yield f"step-down: {made:g} V of {values['supply.voltage_v']:g} V"
 
 
 def _module(values: Values) -> Iterator[str]:
     if not entries("controllers")[values["controller.board"]].get("module"):
         return
-    if not values["flange.enabled"]:
-        yield "module: the flange is off"
+    if not _flanged(values):
+        yield "module: there is no flange"
     wires = min(
         2 + len(m["select"]) + math.ceil(values.cells / len(m["inputs"]))
         for m in multiplexers(values)
@@ -267,6 +283,7 @@ LIMITS = (
     _inputs,
     _step_down,
     _module,
+    _base,
     _plate,
     _nut,
     _bending,

@@ -64,7 +64,8 @@ def test_open_answers_are_all_reported_at_once(
 
 def test_an_entry_from_the_answers_is_that_gripper(fill: Any, config: Input) -> None:
     for name, gripper in {"jaw": example(config.catalogue), **config.catalogue.grippers}.items():
-        read = read_answers(fill(name, gripper, title="My jaw"))
+        based = {"base": gripper.base} if gripper.base else {}
+        read = read_answers(fill(name, gripper, title="My jaw", **based))
         own = {"source", "confidence", "title", "origin"}
         assert read.model_dump(exclude={*own, "envelope"}) == gripper.model_dump(
             exclude={*own, "envelope"}

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from lumitip_fab.catalogue.controllers import OPEN, Signal
-from lumitip_fab.catalogue.record import Confidence, Entry, Length, Offset, Sourced, Strict
+from lumitip_fab.catalogue.record import Confidence, Entry, Length, Name, Offset, Sourced, Strict
 
 Screw = Annotated[str, Field(pattern=r"^M\d{1,2}(\.\d)?$")]
 
@@ -86,6 +86,9 @@ class Gripper(Entry):
     """Mounting geometry of a gripper; distances w are behind the plate's rim plane. Its bolts
     run along the finger, into the gripper."""
 
+    base: Name | None = None
+    """Name of its bottom, as the entry of a coupling in `parts/couplings.toml` has it; left out, no
+    coupling there is known to fit, and no flange is made."""
     stroke_mm: Length
     """Opening of the gripper between its own pads."""
     force_n: float | None = Field(default=None, gt=0, le=5000)
@@ -163,7 +166,7 @@ class Gripper(Entry):
 FIGURES = tuple(
     name
     for name in Gripper.model_fields
-    if name not in {"source", "confidence", "title", "envelope", "origin"}
+    if name not in {"source", "confidence", "title", "base", "envelope", "origin"}
 )
 
 
@@ -198,6 +201,8 @@ class ToolCoupling(Entry):
     """A coupling with the robot's tool flange on its one side, by ISO 9409-1, and a centring
     recess, a locating pin and contacts on its other."""
 
+    base: Name
+    """Name of the bottom of the grippers that stand on it, as their entries have it."""
     height_mm: Length
     """From the robot's tool flange to the face that the gripper stands on."""
     robot_mm: Length

@@ -175,7 +175,7 @@ class Flange(Strict):
     """The flange between robot and gripper, and its board: tool contacts, 5 V, cables."""
 
     enabled: bool
-    """Whether it is made."""
+    """Whether it is made. Where the gripper's entry does not fit `coupling`, it cannot be."""
     coupling: Name
     """Coupling below the flange, in `parts/couplings.toml`."""
     clearance_mm: float = Field(ge=0.05, le=1)

@@ -138,7 +138,9 @@ def rows(design: Design) -> tuple[Row, ...]:
 
 def choice_rows(design: Design) -> tuple[Row, ...]:
     """Every automatic value with its reason, but for those of a flange that is not made."""
-    chosen = [c for c in design.choices if design.flanges or not c.field.startswith("flange.")]
+    of_parts = [c for c in design.choices if c.field != "flange.enabled"]
+    absent = () if design.flanges else [c for c in of_parts if c.field.startswith("flange.")]
+    chosen = [c for c in design.choices if c not in absent]
     return tuple(Row(c.field, "", c.value, c.reason) for c in chosen)
 
 

@@ -15,6 +15,7 @@ from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import bending_lines, lane_mm
 from lumitip_fab.derive.finger.stack import is_flex, least_standoff_mm, mask_mm
 from lumitip_fab.derive.finger.tip import plate_mm
+from lumitip_fab.derive.mount.base import propose_flange
 from lumitip_fab.derive.once import lay_out
 from lumitip_fab.derive.wiring.ratings import (
     SUPPLY_TOLERANCE,
@@ -53,6 +54,7 @@ def proposals() -> tuple[Callable[[Input], Iterator[Proposal]], ...]:
         _vias,
         _channel,
         _room_of_sources,
+        propose_flange,
         _flange,
         _standoff,
         _interface,

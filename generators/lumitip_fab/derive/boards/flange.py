@@ -22,6 +22,7 @@ from lumitip_fab.derive.boards.module import Supplies, derive_module
 from lumitip_fab.derive.boards.packages import capacitor
 from lumitip_fab.derive.boards.ties import derive_ties
 from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.mount.base import refuse_base, refuse_module
 from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
 from lumitip_fab.derive.wiring.strings import Strings
 from lumitip_fab.derive.wiring.wiring import Muxing
@@ -59,8 +60,9 @@ def derive_flange(
     p = config.parameters
     module = config.parts.controller.board.module
     if not p.flange.enabled:
-        faults.unless(module is None, "module_without_flange")
+        refuse_module(config, faults)
         return ()
+    refuse_base(config, faults)
     _refuse(config, faults)
     flange_circuit.refuse_map(config, faults)
     flange_circuit.refuse_parts(config, strings, faults)
