@@ -48,7 +48,10 @@ def test_a_damage_fails_its_check(copied: Path, old: str, new: str, expected: se
 def test_both_totals_say_what_they_are(copied: Path) -> None:
     used, bought = rows(copied, "bom.csv")[-1], rows(copied, "order.csv")[-1]
     assert used["item"] == "used by one pair of fingers"
-    assert bought["item"] == "to buy for one pair of fingers, 1 without a price"
+    assert bought["item"] == "to buy for one pair of fingers"
+    (cable,) = (row for row in rows(copied, "order.csv") if row["item"] == "cable of the gripper")
+    assert (cable["confidence"], cable["packs"], cable["price"]) == ("assumed", "1", "25.00")
+    assert not [row for row in rows(copied, "bom.csv") if row["price"] == ""]
     assert float(used["price"]) < float(bought["price"])
 
 

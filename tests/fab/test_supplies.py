@@ -75,9 +75,9 @@ def test_the_grippers_own_cable_is_in_the_bill(
     mates = [p for p in pieces if p.pack.endswith("mate")]
     assert [re.findall(r"J\d", p.where) for p in mates] == [sockets] * bool(sockets)
     assert [p.quantity for p in mates] == [len(sockets)] * bool(sockets)
-    own = [p for p in pieces if p.item == "gripper's own cable"]
+    own = [p for p in pieces if p.item == "cable of the gripper"]
     assert [re.findall(r"J\d", p.where) for p in own] == [cable] * bool(cable)
-    assert [(p.quantity, p.each) for p in own] == [(1, None)] * bool(cable)
+    assert [(p.quantity, p.each) for p in own] == [(1, 25.0)] * bool(cable)
 
 
 def test_wires_of_two_sections_are_two_sets(inputs: dict[str, Input]) -> None:

@@ -133,7 +133,7 @@ def _plugged(config: Input, of: Assembled) -> Iterator[Used]:
         yield Used(mate, f"plug at {', '.join(headers)} of the flange", len(headers), "piece")
     if lines:
         where = f"from {', '.join(lines)} of the flange: its maker's, or wires for its current"
-        yield Used("gripper's own cable", where, 1, "piece")
+        yield Used("gripper cable", where, 1, "piece")
 
 
 def _cast(config: Input, of: Assembled) -> Iterator[Used]:
