@@ -13,7 +13,7 @@ from lumitip_fab.checks import wrap
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.design.encoding import read_design
+from lumitip_fab.design.encoding import design_text, read_design
 from lumitip_fab.design.frames import (
     backing_bed_to_sensor,
     mould_bed_to_sensor,
@@ -66,16 +66,75 @@ def prop_without_a_stop(part: Body) -> Body:
     return part - box((-20, -50, -5), (20, -42.4, 2.25))
 
 
+def prop_wider(part: Body) -> Body:
+    return part + box((-20, -44.6, 2.3), (20, -37.4, 3.5))
+
+
 @pytest.mark.parametrize(
     ("damage", "fails"),
     [
         (prop_low, {"prop", "level", "lip"}),
-        (prop_high, {"prop", "level", "held", "step", "three_mf"}),
-        (prop_without_a_stop, {"prop", "step", "three_mf"}),
+        (prop_high, {"prop", "level", "held"}),
+        (prop_without_a_stop, {"prop"}),
+        (prop_wider, {"prop"}),
     ],
 )
 def test_a_damaged_prop(damage: Damage, fails: set[str], copied: Path) -> None:
     assert carved(copied, PROP, damage) == fails
+
+
+def prop_of(design_dir: Path, folder: Path, lines: str, to: Path) -> Design:
+    """The prop of another design, in the place of what is there."""
+    other = of_lines(design_dir, folder, lines)
+    for artefact in prop_files(other, other.props[0]):
+        (to / artefact.path).write_bytes(artefact.data)
+    return other
+
+
+@pytest.mark.parametrize(
+    ("lines", "fails"),
+    [
+        ("[mould]\ntip_lip_mm = 0.1\n", {"prop", "level", "lip", "step", "three_mf"}),
+        ("[mould]\nwall_mm = 3.2\n", {"prop", "step", "three_mf"}),
+        ("[breakout]\nboard_mm = [45.72, 38.1]\n", set()),
+    ],
+)
+def test_a_prop_of_another_design_is_seen(
+    lines: str, fails: set[str], copied: Path, design_dir: Path, tmp_path: Path
+) -> None:
+    own = read_design(copied / "design.json").props[0]
+    other = prop_of(design_dir, tmp_path, lines, copied).props[0]
+    assert (other == own) == (not fails)
+    assert failing(copied, "wrap") >= fails
+    assert bool(failing(copied, "wrap")) == bool(fails)
+
+
+@pytest.mark.parametrize("end", ["stl", "3mf", "step"])
+def test_one_file_of_another_prop_is_seen(
+    end: str, copied: Path, design_dir: Path, tmp_path: Path
+) -> None:
+    whole = {f.name: f.read_bytes() for f in (copied / "mould").glob("prop.*")}
+    prop_of(design_dir, tmp_path, "[mould]\nwall_mm = 3.2\n", copied)
+    for name, data in whole.items():
+        if not name.endswith(end):
+            (copied / "mould" / name).write_bytes(data)
+    check = {"stl": "prop", "3mf": "three_mf", "step": "step"}[end]
+    failed = failing(copied, "wrap")
+    assert check in failed
+    assert not failed & ({"three_mf", "step"} - {check})
+
+
+def test_a_prop_that_an_earlier_design_left_is_seen(
+    copied: Path, design_dir: Path, tmp_path: Path
+) -> None:
+    flat = of_lines(design_dir, tmp_path, "[mould]\ntip_lip_mm = 0\n")
+    (copied / "design.json").write_text(design_text(flat), encoding="utf-8")
+    found = list(wrap.measure(copied, flat))
+    assert [m.subject for m in found] == [f"mould/prop.{end}" for end in ("3mf", "step", "stl")]
+    assert not [m for m in found if m.passed]
+    for file in (copied / "mould").glob("prop.*"):
+        file.unlink()
+    assert not list(wrap.measure(copied, flat))
 
 
 def slot_filled(part: Body) -> Body:

@@ -168,6 +168,36 @@ def measure_corners(
     yield _measured(f"{prefix}.step", outputs, stl.replace(".stl", ".step"), _step, off_mm)
 
 
+def measure_polyhedron(
+    prefix: str, outputs: Path, stl: str, standing: Vectors, sensor: Vectors
+) -> Iterator[Measurement]:
+    """How far the corners of 3MF and STEP lie from those of a part with flat faces alone.
+
+    Args:
+        prefix: of the checks' names.
+        outputs: the output folder.
+        stl: the part's STL file in it; the others lie beside it.
+        standing: the design's corners in the printer, shape `(n, 3)`.
+        sensor: its corners in the sensor frame, shape `(n, 3)`.
+    """
+    for check, end, read, corners in (
+        ("three_mf", ".3mf", three_mf_mm, standing),
+        ("step", ".step", _step, sensor),
+    ):
+        path = stl.replace(".stl", end)
+
+        def off_mm(found: Vectors, corners: Vectors = corners) -> float:
+            return apart_mm(found, corners)
+
+        yield _measured(f"{prefix}.{check}", outputs, path, read, off_mm)
+
+
+def apart_mm(found: Vectors, wanted: Vectors) -> float:
+    """Farthest distance of a point of one set to the other set, either way (mm)."""
+    there, back = (cKDTree(b).query(a)[0] for a, b in ((found, wanted), (wanted, found)))
+    return float(max(there.max(), back.max()))
+
+
 def _from_box(bounds: Vectors) -> Callable[[Vectors], float]:
     """How far the box round some points differs from this one."""
     return lambda points: float(

@@ -12,14 +12,16 @@ import numpy as np
 import shapely
 
 from lumitip_fab.checks.mould import along, distances
-from lumitip_fab.checks.printed import RAY_MM, measure_boxes
+from lumitip_fab.checks.printed import RAY_MM, apart_mm, measure_polyhedron
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measure, Measurement, Subject, measured, unreadable
 from lumitip_fab.design import Design, Finger, Prop
-from lumitip_fab.design.frames import backing_bed_to_sensor, prop_bed_to_sensor
+from lumitip_fab.design.frames import applied, backing_bed_to_sensor, prop_bed_to_sensor
 from lumitip_fab.errors import OutputError
 
-READS = ("mould/*_mould.stl", "mould/prop.*", "backing/*_backing.stl")
+PROP_FILES = "mould/prop.*"
+READS = ("mould/*_mould.stl", PROP_FILES, "backing/*_backing.stl")
+STRAY = "this design has no prop: delete the file, which another design left"
 SLOT_MM = 0.05
 HEIGHT_MM = 0.02
 LEVEL_MM = 0.05
@@ -73,7 +75,10 @@ class Tilted(Subject):
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
-    """The prop, then both fingers."""
+    """The prop, then both fingers; a prop that the design does not have fails."""
+    if not design.props:
+        for file in sorted(outputs.glob(PROP_FILES)):
+            yield unreadable("wrap.prop", f"mould/{file.name}", STRAY)
     for prop in design.props:
         try:
             printed = solids.read_mesh(outputs / prop.file)
@@ -97,7 +102,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 
 
 def _prop(outputs: Path, printed: Any, prop: Prop, design: Design) -> Iterator[Measurement]:
-    """One closed body of the right heights, which its STEP and 3MF have, too."""
+    """One closed body with the design's corners, which its STEP and 3MF have, too."""
     of = Subject("wrap", prop.file)
     edges = solids.open_edges(printed) + abs(solids.bodies(printed) - 1)
     yield of.figure("prop", edges, 0, 0, "edges", "open, or bodies too many")
@@ -105,8 +110,25 @@ def _prop(outputs: Path, printed: Any, prop: Prop, design: Design) -> Iterator[M
     off[1] -= prop.height_mm + prop.stop_mm
     note = "of plate and stop from their heights"
     yield of.near("prop", off, 0.0, HEIGHT_MM, note, at="heights")
-    sensor = solids.moved(printed, prop_bed_to_sensor(design.stack, design.mould, prop))
-    yield from measure_boxes("wrap", outputs, prop.file, printed.bounds, sensor.bounds)
+    corners = _corners(prop, design)
+    to_sensor = prop_bed_to_sensor(design.stack, design.mould, prop)
+    standing = applied(np.asarray(np.linalg.inv(to_sensor), dtype=np.float64), corners)
+    apart = apart_mm(np.asarray(printed.vertices), standing)
+    yield of.figure("prop", apart, 0, HEIGHT_MM, note="of a corner from its place", at="corners")
+    yield from measure_polyhedron("wrap", outputs, prop.file, standing, corners)
+
+
+def _corners(prop: Prop, design: Design) -> solids.Vectors:
+    """Corners of plate and stop in the sensor frame, shape `(12, 3)`."""
+    plate, stop = prop.plate, prop.stop
+    bed = design.stack.silicone_z_mm + design.mould.floor_mm
+    foot, top = bed + prop.height_mm, bed - prop.stop_mm
+    side = (
+        *((plate.y_max_mm, z) for z in (foot, bed)),
+        *((stop.y_max_mm, z) for z in (bed, top)),
+        *((stop.y_min_mm, z) for z in (top, foot)),
+    )
+    return np.array([(x, y, z) for x in (plate.x_min_mm, plate.x_max_mm) for y, z in side])
 
 
 def _top(mesh: Any) -> float:
