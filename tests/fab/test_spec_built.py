@@ -1,7 +1,9 @@
 """What fingers, flange and holder weigh, told from the files that were built."""
 
 import csv
+import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -56,6 +58,35 @@ def test_the_flanges_safety_is_told_as_an_estimate(outputs: Path) -> None:
     for row in (layers, heads):
         assert "5.9 kg of gripper and payload" in row.reason
         assert "an estimate, not tested" in row.reason
+
+
+@pytest.mark.slow
+def test_the_orientation_of_the_print_has_both_figures(outputs: Path) -> None:
+    design = read_design(outputs / "design.json")
+    rows = {r.quantity: r for r in built_rows(outputs, design)}
+    safety = rows["safety of a finger's layers"].computed
+    row = rows["orientation of the backings' print"]
+    assert row.computed == "standing"
+    found = re.search(r"bear (\S+) times the load standing, and (\S+) times lying", row.reason)
+    assert found and found[1] == safety and float(found[2]) > 1.5 * float(safety)
+    assert "needs support: at least 43 mm hang over nothing" in row.reason
+    assert f"the printer bridges {design.printing.bridge_mm:g} mm" in row.reason
+    weak = replace(design.slicing.backing, plane_mpa=5.0)
+    other = replace(design, slicing=replace(design.slicing, backing=weak))
+    (row,) = (r for r in built_rows(outputs, other) if r.quantity == row.quantity)
+    assert "standing, and no more lying: 0.5 times" in row.reason
+
+
+def test_a_filament_without_a_strength_within_its_layers_has_that_between_them(
+    inputs: dict[str, Input],
+) -> None:
+    config = inputs["published"]
+    known = config.catalogue.filaments
+    bare = known["PETG"].model_copy(update={"plane_mpa": None})
+    catalogue = config.catalogue.model_copy(update={"filaments": {**known, "PETG": bare}})
+    filament = derive(replace(config, catalogue=catalogue)).slicing.backing
+    assert filament.plane_mpa == filament.layer_mpa == 15.0
+    assert derive(config).slicing.backing.plane_mpa == known["PETG"].plane_mpa == 30.0
 
 
 def test_boards_weigh_by_their_laminate_and_copper(inputs: dict[str, Input]) -> None:

@@ -65,6 +65,8 @@ class Filament(Entry):
     """Retraction before a move."""
     layer_mpa: float = Field(gt=0, le=500)
     """Tensile strength from layer to layer."""
+    plane_mpa: float | None = Field(default=None, gt=0, le=500)
+    """Tensile strength within a layer, at 45° to its lines; left out, that from layer to layer."""
     bearing_mpa: float = Field(gt=0, le=500)
     """Compressive strength of a solid print."""
     modulus_mpa: float = Field(gt=0, le=20000)

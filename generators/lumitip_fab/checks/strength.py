@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 
 from lumitip_fab.checks.bolt_seat import measure_seats
+from lumitip_fab.checks.orientation import measure_orientation
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, moments, section
 from lumitip_fab.checks.result import Measurement, unreadable
@@ -37,6 +38,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             yield unreadable("strength.readable", subject, str(error))
             continue
         yield from _limits(subject, found, design)
+        yield from measure_orientation(outputs, design, finger, found)
         yield from seats
 
 

@@ -5,11 +5,13 @@ from pathlib import Path
 
 from lumitip_fab.checks.bolt_seat import finger_seat
 from lumitip_fab.checks.flange import LEAST_SAFETY, strength
+from lumitip_fab.checks.orientation import lying
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.strength import finger_loads
-from lumitip_fab.design import Design, Fab
+from lumitip_fab.design import Design, Fab, Finger
 from lumitip_fab.design.frames import flange_beds
+from lumitip_fab.design.strength import Loads
 from lumitip_fab.docs.row import Row, rows_of
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline import manifest
@@ -105,7 +107,7 @@ def _outside(built: Manifest, design: Design) -> Iterator[Row]:
 def _fingers(out: Path, design: Design) -> Iterator[Row]:
     """What the rated force does to the weaker finger."""
     limit, half_mm = design.strength, design.mask.hole_mm / 2
-    every = (finger_loads(out, design, finger) for finger in design.fingers)
+    every = [finger_loads(out, design, finger) for finger in design.fingers]
     found = min(every, key=lambda each: each.safety)
     glue = limit.glue_mpa / found.glue_mpa
     seats = [finger_seat(out, design, finger) for finger in design.fingers]
@@ -127,6 +129,20 @@ def _fingers(out: Path, design: Design) -> Iterator[Row]:
         strain=100 * found.board_strain,
         most_strain=100 * limit.board_strain,
         most_mm=limit.offset_share * half_mm,
+    )
+    if not design.interfaces:
+        yield from _orientation(out, design, design.fingers[every.index(found)], found)
+
+
+def _orientation(out: Path, design: Design, finger: Finger, found: Loads) -> Iterator[Row]:
+    """Why the backings are printed standing."""
+    other, filament = lying(out, design, finger, found), design.slicing.backing
+    yield from rows_of(
+        "stronger_lying" if other.safety > found.safety else "stronger_standing",
+        found=found,
+        lying=other,
+        filament=filament,
+        bridge_mm=design.printing.bridge_mm,
     )
 
 

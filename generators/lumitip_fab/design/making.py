@@ -209,6 +209,8 @@ class Filament:
     retract_mm: float
     layer_mpa: float
     """Tensile strength from layer to layer."""
+    plane_mpa: float
+    """Tensile strength within a layer."""
     bearing_mpa: float
     """Compressive strength of a solid print."""
     layer_mm: float

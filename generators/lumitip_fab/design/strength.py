@@ -8,6 +8,9 @@ import numpy as np
 from lumitip_fab.design.beam import Beam, Layer, Vectors
 from lumitip_fab.design.torsion import SHEAR, torsion
 
+PEAK = 1.5
+"""Greatest shear in a rectangle over its mean."""
+
 
 @dataclass(frozen=True)
 class Strength:
@@ -50,6 +53,9 @@ class Loads:
     """Where: over the mount plane."""
     safety: float
     """What the layers bear, over what they get; the least over all printed parts."""
+    between_mpa: float
+    """Greatest shear in printed parts, by the force and by twist: what layers bear between them
+    that lie along the finger."""
     bare_n: float
     """Force at which the layers part without glue."""
     board_strain: float
@@ -121,6 +127,8 @@ def loads(of: Loaded, strength: Strength, cells_mm: Vectors, depth_mm: float) ->
         layers_mpa=float(worst.max()),
         layers_h_mm=float(beam.h_mm[worst.argmax()]),
         safety=limit / max(float(worst.max()), 1e-9),
+        between_mpa=force
+        * max(_between_mpa(beam, layer, aside, across) for layer, _ in of.printed),
         bare_n=bare_n,
         board_strain=float(strain.max()),
         glue_mpa=_glue_mpa(of, strength),
@@ -173,6 +181,29 @@ def _tension_mpa(beam: Beam, layer: Layer, aside: _Turned, across: _Turned) -> V
         for pulled, case in ((lower, aside), (side, across))
     )
     return np.maximum(back, np.maximum(*twisted))
+
+
+def _between_mpa(beam: Beam, layer: Layer, aside: _Turned, across: _Turned) -> float:
+    """Greatest shear in a layer by 1 N: across a section, as of a rectangle, and by twist."""
+    of = next(k for k, each in enumerate(beam.layers) if each is layer)
+    there = (layer.area_mm2 > 0) & (beam.arm_mm > 0)
+    if not there.any():
+        return math.inf
+    shear = SHEAR * layer.modulus_mpa
+    twist = np.maximum(aside.reach_mm[of] * aside.twist, across.reach_mm[of] * across.twist)
+    return float((PEAK / layer.area_mm2[there] + shear * twist[there]).max())
+
+
+def lying_safety(found: Loads, layer_mpa: float, plane_mpa: float) -> float:
+    """Safety of the printed layers if they lay along the finger: tension within them, shear between
+    them.
+
+    Args:
+        found: what the rated force does.
+        layer_mpa: strength between layers, in shear too.
+        plane_mpa: strength within a layer.
+    """
+    return min(plane_mpa / max(found.layers_mpa, 1e-9), layer_mpa / max(found.between_mpa, 1e-9))
 
 
 def _glue_mpa(of: Loaded, strength: Strength) -> float:

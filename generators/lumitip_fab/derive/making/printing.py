@@ -55,6 +55,7 @@ def _filament(config: Input, name: str, density_g_ml: float) -> Filament:
         entry.max_flow_mm3_s,
         entry.retract_mm,
         entry.layer_mpa,
+        entry.layer_mpa if entry.plane_mpa is None else entry.plane_mpa,
         entry.bearing_mpa,
         config.parts.printer.profile.layer_mm,
     )
