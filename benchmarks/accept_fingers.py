@@ -22,6 +22,8 @@ from lumitip_fab.tolerance.draws import Draws, built, draw
 
 PLAY_MM = 0.1
 """Standard deviation of the gauge's place on its finger, in x and in y."""
+TURN_DEG = 0.3
+"""Standard deviation of its direction between its rails."""
 STEADY, MOVING = 60, 300
 """Frames of a steady step, and of the sheet that is moved."""
 NOISE = 1.5
@@ -30,7 +32,7 @@ _GAP_SD_MM = 0.1  # of fingers that are closed on the gauge
 
 @dataclass(frozen=True)
 class Fault:
-    """What is wrong with a finger; nothing by default."""
+    """A fault of a finger; none by default."""
 
     kind: str = "none"
     cells: tuple[int, ...] = ()
@@ -55,7 +57,7 @@ class Workshop:
         return draw(self._tolerances, self._spread, len(self._layout), count, seed)
 
     def frames(self, draws: Draws, finger: int, fault: Fault, seed: int) -> Frames:
-        """What a finger reads at all steps.
+        """Frames of a finger at all steps.
 
         Args:
             draws: of `draws`.
@@ -67,7 +69,10 @@ class Workshop:
         own = {name: rows[finger : finger + 1].copy() for name, rows in draws.items()}
         for name, entry, value in fault.moved:
             own[name][0, entry] += value
-        light = self._rays.of(built(self._layout, self.model, own, 0))
+        pair = built(self._layout, self.model, own, 0)
+        if fault.kind == "dead LED":
+            pair.led[list(fault.cells)] = 0.0
+        light = self._rays.of(pair)
         exposure = max(1.0 + float(own["exposure"][0, 0]), 0.2)
         detector = 1.0 + own["detector"][0]
         full = light.full * np.maximum(detector, 0.2)
@@ -75,13 +80,15 @@ class Workshop:
         beside = own["finger_shift"][0]
         slack = float(own["gap"][0, 0])
 
-        def steady(share: Floats) -> Values:
-            return self._read(np.tile(share, (STEADY, 1)), drive, chance)
+        def steady(share: Floats, at: Floats) -> Values:
+            return self._read(np.tile(share, (STEADY, 1)), at, chance)
 
+        # Gains drift by as much as since a tare, once for all steps after the first.
+        later = drive * np.maximum(1.0 + own["drift"][0], 0.2)
         states = {
-            "empty": steady(np.ones(len(self._layout))),
-            "sheet": steady(np.full(len(self._layout), 1e-3)),
-            "moving": self._read(light.shares(path(self._layout, chance)), drive, chance),
+            "empty": steady(np.ones(len(self._layout)), drive),
+            "sheet": steady(np.full(len(self._layout), 1e-3), later),
+            "moving": self._read(light.shares(path(self._layout, chance)), later, chance),
         }
         rows = []
         for placement in self._gauge.placements:
@@ -93,11 +100,12 @@ class Workshop:
             up = slack if placement.on == "emitter" else 0.0
             piece = replace(
                 placement.piece,
+                angle_deg=placement.piece.angle_deg + TURN_DEG * chance.standard_normal(),
                 offset_mm=placement.piece.offset_mm + float(y * np.cos(angle) - x * np.sin(angle)),
                 low_mm=placement.piece.low_mm + up,
                 high_mm=placement.piece.high_mm + up,
             )
-            rows.append(steady(light.behind(piece)))
+            rows.append(steady(light.behind(piece), later))
         swapped = _damaged(states | {f"gauge {n}": row for n, row in enumerate(rows)}, fault)
         count = len(rows)
         return Frames(
@@ -108,9 +116,10 @@ class Workshop:
         )
 
     def _read(self, share: Floats, drive: Floats, chance: np.random.Generator) -> Values:
+        # Codes are whole steps of the voltage, rounded down, so the light is rounded up.
         value = values_of_drive(share * drive, self.model)
         value += NOISE * chance.standard_normal(value.shape)
-        codes: Values = np.clip(np.floor(value), 0.0, FULL).astype(np.float32)
+        codes: Values = np.clip(np.ceil(value), 0.0, FULL).astype(np.float32)
         return codes
 
 
@@ -132,6 +141,10 @@ def _damaged(states: dict[str, Values], fault: Fault) -> dict[str, Values]:
         order = np.arange(states["empty"].shape[1])
         order[[one, two]] = two, one
         return {name: frames[:, order] for name, frames in states.items()}
+    if fault.kind == "bridged":
+        pair = list(fault.cells)
+        for frames in states.values():
+            frames[:, pair] = frames[:, pair].mean(axis=1, keepdims=True)
     level = {"open": 0.0, "short": FULL}.get(fault.kind)
     if level is not None:
         for frames in states.values():

@@ -2,8 +2,8 @@
 
 Half of the fingers have one injected fault; all have the spread of `tolerances.toml`, and the gauge
 lies 0.1 mm beside its place. A finger is out of tolerance if a true deviation is beyond the limits
-of `lumitip.acceptance.verdict`, injected or not. It is named rightly if the first finding is what
-is wrong. The scattered share is compared with the mean of eight good fingers.
+of `lumitip.acceptance.findings`, injected or not. It is named rightly if all of its faults are
+found, at their cells, and the first finding is one of them. The scattered share is compared with the mean of eight good fingers.
 
 These fingers are drawn with the rays that the verdict is built on. `--second N` tries good fingers
 of the second optical model instead (`second_light`), which shares nothing with them.
@@ -15,6 +15,7 @@ import argparse
 import sys
 from collections import Counter
 from concurrent.futures import Executor
+from dataclasses import dataclass
 from functools import lru_cache, partial
 from pathlib import Path
 
@@ -24,6 +25,7 @@ from accept_faults import KINDS, NAMED, drawn, out_of_tolerance
 from accept_fingers import Fault, Workshop
 from accept_second import second_frames
 from common import Goals
+from lumitip.acceptance.findings import Finding
 from lumitip.acceptance.gauge import Gauge
 from lumitip.acceptance.verdict import Judge, Verdict
 from lumitip.tasks.bench import workers
@@ -58,22 +60,45 @@ class Trials:
         ]
         self._reference = {name: float(np.mean([of[name] for of in each])) for name in each[0]}
 
-    def __call__(self, seed: int, number: int) -> tuple[set[str], list[str]]:
-        """What is out of tolerance in a finger, and the findings in their order."""
+    def __call__(self, seed: int, number: int) -> "Tried":
+        """A finger with or without a fault."""
         chance = np.random.default_rng((seed, number))
         fault, own = drawn(self.layout, chance), int(chance.integers(2**32))
         draws = self._workshop.draws(1, own)
         frames = self._workshop.frames(draws, 0, fault, own)
         verdict = self.judge(frames, self._reference)
-        return out_of_tolerance(draws, 0, fault), _kinds(verdict)
+        return Tried.of(out_of_tolerance(draws, 0, fault), fault, verdict)
 
-    def second(self, seed: int, number: int) -> tuple[set[str], list[str]]:
-        """The same of a good finger of the second optical model."""
-        return set(), _kinds(self.judge(second_frames(self.layout, self.gauge, seed + number)))
+    def second(self, seed: int, number: int) -> "Tried":
+        """A good finger of the second optical model."""
+        verdict = self.judge(second_frames(self.layout, self.gauge, seed + number))
+        return Tried.of(set(), Fault(), verdict)
 
 
-def _kinds(verdict: Verdict) -> list[str]:
-    return [f.kind for f in verdict.findings] + (["unseen"] if verdict.unseen else [])
+@dataclass(frozen=True)
+class Tried:
+    """A finger and its verdict."""
+
+    out: tuple[str, ...]
+    """Names of the faults that it has."""
+    alarms: tuple[str, ...]
+    """Findings, the first one first."""
+    right: bool
+    """Whether every fault is named, at its cells, and the first finding is one of them."""
+
+    @classmethod
+    def of(cls, out: set[str], fault: Fault, verdict: Verdict) -> "Tried":
+        """Compare the findings with the faults."""
+
+        def names(finding: Finding, kind: str) -> bool:
+            fits = finding.kind in NAMED.get(kind, {kind})
+            return fits and set(finding.cells) <= set(fault.cells)
+
+        found = verdict.findings
+        every = all(any(names(finding, kind) for finding in found) for kind in out)
+        first = bool(found) and any(names(found[0], kind) for kind in out)
+        alarms = [f.kind for f in found] + (["unseen"] if verdict.unseen else [])
+        return cls(tuple(sorted(out)), tuple(alarms), every and first)
 
 
 @lru_cache(maxsize=1)
@@ -82,33 +107,31 @@ def trials() -> Trials:
     return Trials()
 
 
-def tried(seed: int, number: int) -> tuple[set[str], list[str]]:
+def tried(seed: int, number: int) -> Tried:
     """A finger with or without a fault."""
     return trials()(seed, number)
 
 
-def tried_second(seed: int, number: int) -> tuple[set[str], list[str]]:
+def tried_second(seed: int, number: int) -> Tried:
     """A good finger of the second optical model."""
     return trials().second(seed, number)
 
 
-def table(found: list[tuple[set[str], list[str]]], goals: Goals) -> None:
+def table(found: list[Tried], goals: Goals) -> None:
     """Print the rates, by what is out of tolerance."""
     fingers, caught, right = Counter[str](), Counter[str](), Counter[str]()
-    for out, kinds in found:
-        if not out:
-            continue
-        name = min(out) if len(out) == 1 else "several"
-        fingers[name] += 1
-        caught[name] += bool(kinds)
-        names = set().union(*(NAMED.get(kind, {kind}) for kind in out))
-        right[name] += bool(kinds) and kinds[0] in names
+    for one in found:
+        if one.out:
+            name = one.out[0] if len(one.out) == 1 else "several"
+            fingers[name] += 1
+            caught[name] += bool(one.alarms)
+            right[name] += one.right
     print(f"  {'out of tolerance':<18}{'fingers':>9}{'caught':>9}{'named rightly':>15}")
     for name in (*KINDS[1:], "holes", "several"):
         if fingers[name]:
             print(f"  {name:<18}{fingers[name]:>9}{caught[name]:>9}{right[name]:>15}")
-    good = [kinds for out, kinds in found if not out]
-    alarms = Counter(kinds[0] for kinds in good if kinds)
+    good = [one for one in found if not one.out]
+    alarms = Counter(one.alarms[0] for one in good if one.alarms)
     print(f"  {'none':<18}{len(good):>9}; false alarms: {dict(alarms) or 'none'}")
     if fingers:
         share = 100.0 * sum(right.values()) / sum(fingers.values())
@@ -131,7 +154,7 @@ def main() -> int:
     return goals.exit_code()
 
 
-def _all(pool: Executor, options: argparse.Namespace) -> list[tuple[set[str], list[str]]]:
+def _all(pool: Executor, options: argparse.Namespace) -> list[Tried]:
     count, one = (options.second, tried_second) if options.second else (options.count, tried)
     chunk = max(1, min(20, count // (2 * options.jobs)))
     return list(pool.map(partial(one, options.seed), range(count), chunksize=chunk))

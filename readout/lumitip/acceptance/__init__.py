@@ -1,9 +1,13 @@
 """Acceptance of a finished pair of fingers: a protocol with a printed gauge, and its verdict.
 
 gauge      the gauge's placements, from `gauge.json`
-steps      what the builder does, and the frames of each step
+steps      the builder's steps, and the frames of each
 response   values that fingers with some deviations read of the gauge
 fit        the deviations that explain the measured values
-verdict    limits, findings, and corrections for the robot
+places     swapped cells, from a sheet that moves
+findings   limits of what is judged
+cells      findings of single cells
+fingers    findings of the fingers as a whole
+verdict    the judge
 report     JSON and HTML
 """

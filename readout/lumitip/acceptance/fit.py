@@ -9,14 +9,14 @@ from lumitip.grid import Floats
 from lumitip.health.swaps import Mask
 from lumitip.twin.optics import drive_of_values
 
-SIGMA = 2.0
-"""Standard deviation of a cell's value from its model, of the differences between single parts
-(counts of 255)."""
+SIGMA = 4.0
+"""Standard deviation of a cell's value from its model, of the spread of parts and of gains that
+drift (counts of 255)."""
 _ROUNDS = 15
 _NEAR = 0.01  # of a prior: a smaller step ends the fit
 _OUTLYING = 3.0  # times SIGMA: a cell that misfits as much counts half
 _MOST_STEP, _MOST = 1.0, 2.0  # of a prior: a step, and a deviation
-_POOR = 1.0  # counts, above which the fit begins anew from other gaps
+_POOR = 3.0  # counts, above which the fit begins anew from other gaps
 _GAPS_MM = (-1.0, 1.2, 2.4)  # beyond the gauge's
 _TRIALS = 4  # of shorter steps
 
@@ -31,7 +31,7 @@ class Fitted:
     residual: Floats
     """Measured less expected values, shape `(placements, cells)`; NaN for cells left out."""
     misfit: float
-    """What the fit makes small."""
+    """Sum that the fit minimizes."""
 
     @property
     def rms(self) -> float:
@@ -118,7 +118,7 @@ def _weights(off: Floats, usable: Mask) -> Floats:
 
 
 def _robust(priors: Floats, off: Floats, usable: Mask, at: Floats) -> float:
-    """The misfit that the weights of the cells stand for."""
+    """Sum over the cells of a loss that grows ever slower, and of the priors."""
     scale = (_OUTLYING * SIGMA) ** 2
     far = np.log1p(np.mean(off**2, axis=0) / scale)[usable]
     return float(len(off) * scale / SIGMA**2 * far.sum() + ((at / priors) ** 2).sum())

@@ -63,7 +63,7 @@ class Gauge:
         except (OSError, UnicodeDecodeError) as error:
             raise GaugeError(
                 f"{path}: cannot be read ({error}). `lumitip-fab build` writes it beside "
-                "layout.json"
+                "layout.json, if the design has a gauge card"
             ) from None
         return cls.from_json(text, str(path))
 
@@ -76,7 +76,7 @@ class Gauge:
         """
         try:
             record = json.loads(text)
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             raise GaugeError(f"{name}: no JSON ({error})") from None
         if faults := list(_faults(record)):
             raise GaugeError(f"{name}: " + "; ".join(faults))
@@ -106,7 +106,8 @@ def _faults(record: Any) -> Iterator[str]:
     if not isinstance(record, dict):
         yield "an object is needed"
         return
-    if record.get("schema_version") != SCHEMA_VERSION:
+    version = record.get("schema_version")
+    if isinstance(version, bool) or version != SCHEMA_VERSION:
         version = shown(record.get("schema_version"))
         yield f"schema_version is {version}; this version reads {SCHEMA_VERSION}"
         return
@@ -117,9 +118,19 @@ def _faults(record: Any) -> Iterator[str]:
     if not isinstance(placements, list) or not placements:
         yield f"placements is {shown(placements)}; a list of one or more is needed"
         return
-    for number, each in enumerate(placements):
-        for fault in _placement_faults(each):
-            yield f"placements[{number}]: {fault}"
+    faults = [
+        f"placements[{number}]: {fault}"
+        for number, each in enumerate(placements)
+        for fault in _placement_faults(each)
+    ]
+    yield from faults
+    if faults:
+        return
+    for name, allowed in (("kind", _KINDS), ("on", _ON)):
+        if missing := [one for one in allowed if all(each[name] != one for each in placements)]:
+            yield f'no placement has {name} "{missing[0]}"; each {name} is needed'
+    if any(each["high_mm"] > as_float(record.get("gap_mm")) for each in placements):
+        yield "a placement's high_mm is above gap_mm"
 
 
 def _placement_faults(record: Any) -> Iterator[str]:

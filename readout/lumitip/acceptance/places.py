@@ -1,15 +1,15 @@
 """Swapped cells, found while the straight edge of a sheet moves over all cells.
 
-In each frame the edge is estimated from all cells; each cell then fits the light expected at its
-own place better than at any other, unless its channel is another's.
+In each frame the edge is estimated from all cells. The light that is expected at each place is then
+compared with each channel: a swapped channel fits the place of the other cell.
 """
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from lumitip.estimation import PoseEstimator
-from lumitip.frame import Values
 from lumitip.grid import Floats
 from lumitip.health.swaps import Mask
 from lumitip.layout import Layout
@@ -17,12 +17,27 @@ from lumitip.twin import Twin
 
 MOST_FRAMES = 150
 _LEAST_FRAMES = 20
+_MOVED, _LEAST_SHARE = 15.0, 0.8
+"""Standard deviation of a cell that the sheet passes (counts), and share of the cells."""
+_AGAIN = "Move its edge over all cells, in all directions"
 _LEAST_GAIN = 5.0
 """Least improvement of two cells in each other's places, of a frame on average (counts of 255)."""
 _LEAST_RATIO = 0.5  # of their misfit in their own places, which the change takes away
 _SUSPECT = 3.0  # times the median misfit of cells in their own places
 _MOST_SWAPS = 8
 _MOST_MISFIT = 40.0  # of a frame that an edge explains, swapped cells included (counts)
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """The result of `Places`."""
+
+    swapped: tuple[tuple[int, int], ...]
+    """Pairs of cells, the clearest first."""
+    misfit: Floats | None
+    """Mean difference of each channel from the light at its place (counts of 255)."""
+    unseen: str | None
+    """Why swapped cells cannot be found; `None` if they can."""
 
 
 class Places:
@@ -38,25 +53,29 @@ class Places:
         self._estimate = PoseEstimator(layout, gap_mm=gap_mm).prepare("edge")
         self._twin = Twin(layout, self._estimate.model)
 
-    def swapped(self, values: Values, usable: Mask) -> list[tuple[int, int]]:
-        """Pairs of cells that are swapped, the clearest first.
+    def __call__(self, values: Floats, usable: Mask) -> "Seen":
+        """Compare each channel with the light at each place.
 
         Args:
             values: calibrated, of the sheet that moves, shape `(n, cells)`.
             usable: cells without another fault, shape `(cells,)`.
         """
+        share = float((values.std(axis=0) > _MOVED)[usable].mean()) if usable.any() else 0.0
+        if share < _LEAST_SHARE:
+            return Seen((), None, f"the sheet moved over {share:.0%} of the cells. {_AGAIN}")
         misfit = self._misfit(values, usable)
+        if misfit is not None:
+            own = np.diag(misfit)
+            # Cells in other places bend the edge; without them the others show it as it is.
+            trusted = usable & (own < _SUSPECT * np.median(own[usable]))
+            misfit = self._misfit(values, trusted)
         if misfit is None:
-            return []
-        own = np.diag(misfit)
-        # Cells in other places bend the edge; without them the others show it as it is.
-        trusted = usable & (own < _SUSPECT * np.median(own[usable]))
-        again = self._misfit(values, trusted)
-        return [] if again is None else list(_exchanges(again, usable))
+            return Seen((), None, f"too few frames show the straight edge of a sheet. {_AGAIN}")
+        return Seen(tuple(_exchanges(misfit, usable)), np.diag(misfit), None)
 
-    def _misfit(self, values: Values, trusted: Mask) -> Floats | None:
-        """Mean difference of what channel a read from the light at place i, shape `(a, i)`; None
-        if too few frames show an edge.
+    def _misfit(self, values: Floats, trusted: Mask) -> Floats | None:
+        """Mean difference of channel a from the light at place i, shape `(a, i)`; None if too few
+        frames show an edge.
 
         Args:
             values: of the moving sheet.
@@ -68,10 +87,10 @@ class Places:
         measured, expected = (np.array(part) for part in zip(*rows, strict=True))
         return np.asarray(np.abs(measured[:, :, None] - expected[:, None, :]).mean(axis=0))
 
-    def _explained(self, values: Values, trusted: Mask) -> Iterator[tuple[Floats, Floats]]:
+    def _explained(self, values: Floats, trusted: Mask) -> Iterator[tuple[Floats, Floats]]:
         """Frames with an edge, and the light that is expected of it."""
         every = max(1, len(values) // MOST_FRAMES)
-        for row in values[::every].astype(np.float64):
+        for row in values[::every]:
             found = self._estimate(np.where(trusted, row, np.nan), "edge")
             if not np.isfinite(found.offset_mm):
                 continue

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from lumitip.acceptance import verdict as limits
+from lumitip.acceptance import findings as limits
 from lumitip.acceptance.response import DEVIATIONS
 from lumitip.acceptance.steps import Frames
 from lumitip.acceptance.verdict import Verdict
@@ -26,7 +26,6 @@ _LIMITS = {
     **dict.fromkeys(("receiver_x", "receiver_y", "emitter_x", "emitter_y"), limits.MASK_MM),
     **dict.fromkeys(("receiver_turn", "emitter_turn"), limits.MASK_DEG),
     "gap": limits.GAP_MM,
-    "scatter": limits.SCATTER_ALONE,
     "hole": limits.HOLE_MM,
 }
 """Of the deviations that are judged; of a mask the way in x and y together."""
@@ -46,13 +45,15 @@ text { fill: #fff; text-anchor: middle }
 
 @dataclass(frozen=True)
 class Circumstances:
-    """What a report states besides the measurement."""
+    """Circumstances of the measurement, for the report."""
 
     device_id: str
     date: str
     """Start of the protocol, ISO 8601."""
     gauge_file: bytes
     versions: dict[str, str]
+    reference: dict[str, float] | None = None
+    """Mean deviations of good fingers, if the verdict was made with them."""
 
 
 def write(
@@ -65,48 +66,80 @@ def write(
     """Write `acceptance.json`, `acceptance.html` and `frames.npz`; the paths written.
 
     Args:
-        folder: made if it does not exist; files of an earlier report are replaced.
+        folder: made if it does not exist.
         frames: of all steps.
         judged: the verdict on them.
         layout: the cells.
         circumstances: device, date and versions.
 
     Raises:
+        LumitipError: if the folder has a report.
         OSError: if they cannot be written.
     """
     arrays = _arrays(frames)
     packed = io.BytesIO()
     np.savez_compressed(packed, **arrays)  # type: ignore[arg-type]
     record = _record(arrays, packed.getvalue(), judged, layout, circumstances)
-    folder.mkdir(parents=True, exist_ok=True)
     contents = {
         FRAMES: packed.getvalue(),
-        JSON: (json.dumps(record, indent=1) + "\n").encode(),
         HTML: page(record, judged, layout).encode(),
+        JSON: (json.dumps(record, indent=1) + "\n").encode(),
     }
+    prepare(folder)
     for name, data in contents.items():
-        (folder / name).write_bytes(data)
+        (folder / f"{name}.new").write_bytes(data)
+    for name in contents:
+        (folder / f"{name}.new").replace(folder / name)
     return [folder / name for name in (HTML, JSON, FRAMES)]
 
 
-def mean_deviations(paths: Sequence[Path]) -> dict[str, float]:
-    """Mean deviations of pairs of fingers, by their names, from their reports.
+def prepare(folder: Path) -> None:
+    """Make the folder of a report.
 
     Raises:
-        LumitipError: if a file cannot be read or is no report with deviations.
+        LumitipError: if it has one already.
+        OSError: if nothing can be written there.
     """
-    each = [_deviations_of(path) for path in paths]
+    if (folder / JSON).exists():
+        raise LumitipError(f"{folder} has a report already. Choose another folder with --out")
+    folder.mkdir(parents=True, exist_ok=True)
+    trial = folder / f"{JSON}.new"
+    trial.write_bytes(b"")
+    trial.unlink()
+
+
+def _limit(name: str, reference: dict[str, float] | None) -> float | None:
+    if name == "scatter":
+        return limits.SCATTER if reference else limits.SCATTER_ALONE
+    return _LIMITS.get(name)
+
+
+def mean_deviations(paths: Sequence[Path], design_hash: str) -> dict[str, float]:
+    """Mean deviations of accepted pairs of fingers of one design, by their names.
+
+    Args:
+        paths: their reports.
+        design_hash: of the design.
+
+    Raises:
+        LumitipError: if a file is not such a report.
+    """
+    each = [_deviations_of(path, design_hash) for path in paths]
     return {name: sum(of[name] for of in each) / len(each) for name in each[0]}
 
 
-def _deviations_of(path: Path) -> dict[str, float]:
+def _deviations_of(path: Path, design_hash: str) -> dict[str, float]:
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
+        if record["accepted"] is not True or record["design_hash"] != design_hash:
+            raise ValueError("not of accepted fingers of this design")
         found = {name: float(of["value"]) for name, of in record["deviations"].items()}
+        if not all(map(math.isfinite, found.values())):
+            raise ValueError("a deviation is not finite")
         return {each.name: found[each.name] for each in DEVIATIONS}
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise LumitipError(
-            f"{path}: cannot be read as the report of accepted fingers ({error!r}). "
+            f"{path}: cannot be read as the report of accepted fingers of this design ({error}). "
             f"`lumitip accept` writes {JSON}"
         ) from error
 
@@ -138,12 +171,13 @@ def _record(
                 "unit": each.unit,
                 "value": _number(judged.deviations[each.name]),
                 "sd": _number(judged.sd[each.name]),
-                "limit": _LIMITS.get(each.name),
+                "limit": _limit(each.name, circumstances.reference),
             }
             for each in DEVIATIONS
             if each.name in judged.deviations
         },
         "misfit_counts": _number(judged.misfit),
+        "reference": circumstances.reference,
         "calibration": {"empty": _listed(judged.empty), "dark": _listed(judged.dark)},
         "gauge_sha256": hashlib.sha256(circumstances.gauge_file).hexdigest(),
         "frames": {
@@ -193,6 +227,7 @@ def page(record: dict[str, Any], judged: Verdict, layout: Layout) -> str:
             *_table(record["deviations"]),
             "<p>± is one standard deviation. Directions: seen on the receiver's face with the tip "
             "up. Thickness of the silicone is hardly seen: measure it with a calliper.</p>",
+            *_reference(record["reference"]),
             "<h2>Made from</h2>",
             f"<p>Gauge <code>{record['gauge_sha256']}</code>; frames in {FRAMES}, "
             f"<code>{record['frames']['sha256']}</code> (SHA-256); "
@@ -201,6 +236,14 @@ def page(record: dict[str, Any], judged: Verdict, layout: Layout) -> str:
             "",
         ]
     )
+
+
+def _reference(reference: dict[str, float] | None) -> Iterator[str]:
+    if reference:
+        yield (
+            "<p>The scattered share was compared with that of good fingers: "
+            f"{reference['scatter']:+.2f} from the drawing.</p>"
+        )
 
 
 def _cells(judged: Verdict, layout: Layout) -> str:

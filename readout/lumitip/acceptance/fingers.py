@@ -1,0 +1,81 @@
+"""Deviations of the fingers as a whole that are out of tolerance."""
+
+import math
+from collections.abc import Mapping
+
+from lumitip.acceptance.findings import (
+    GAP_MM,
+    HOLE_MM,
+    MASK_DEG,
+    MASK_MM,
+    MISFIT,
+    SCATTER,
+    SCATTER_ALONE,
+    Finding,
+)
+from lumitip.acceptance.fit import Fitted
+from lumitip.acceptance.response import named
+
+
+def faults_of_fingers(fitted: Fitted, reference: Mapping[str, float] | None) -> list[Finding]:
+    """Findings of a fit, the largest first.
+
+    Args:
+        fitted: deviations.
+        reference: mean deviations of good fingers, if there are any.
+    """
+    of = named(fitted.deviations)
+    every = [_mask(finger, of) for finger in ("receiver", "emitter")]
+    every += [_gap(of), _silicone(of, reference), _holes(of)]
+    found = sorted((f for f in every if f.times_limit > 1.0), key=lambda f: -f.times_limit)
+    if fitted.rms > MISFIT:
+        text = (
+            f"the cells differ by {fitted.rms:.1f} of 255 from any finger with such faults; at "
+            f"most {MISFIT:g}. Was the gauge pressed against its stop, and the right way round? "
+            "If all pairs show this alone, the twin does not know your optics"
+        )
+        found.append(Finding("unexplained", text, times_limit=fitted.rms / MISFIT))
+    return found
+
+
+def _mask(finger: str, of: Mapping[str, float]) -> Finding:
+    x, y, turn = (of[f"{finger}_{way}"] for way in ("x", "y", "turn"))
+    text = (
+        f"{finger}'s mask: {_direction(x, y)}, turned by {abs(turn):.1f}° to the "
+        f"{'left' if turn > 0 else 'right'}, seen on the receiver with the tip up; at most "
+        f"{MASK_MM:g} mm and {MASK_DEG:g}°. Lay it anew"
+    )
+    times = max(math.hypot(x, y) / MASK_MM, abs(turn) / MASK_DEG)
+    return Finding(f"{finger} mask", text, times_limit=times)
+
+
+def _gap(of: Mapping[str, float]) -> Finding:
+    text = (
+        f"gap: {of['gap']:+.2f} mm beyond the gauge's; at most {GAP_MM:g} mm. Does something lie "
+        "between gauge and skin, is a finger bent or not parallel?"
+    )
+    return Finding("gap", text, times_limit=abs(of["gap"]) / GAP_MM)
+
+
+def _silicone(of: Mapping[str, float], reference: Mapping[str, float] | None) -> Finding:
+    good, most = ("good fingers", SCATTER) if reference else ("the drawing", SCATTER_ALONE)
+    off = of["scatter"] - (reference or {}).get("scatter", 0.0)
+    text = (
+        f"silicone: scattered share {off:+.2f} from {good}; at most {most:g}. Is it the silicone "
+        "of the bill, free of bubbles, and the film's back clear?"
+    )
+    return Finding("silicone", text, times_limit=abs(off) / most)
+
+
+def _holes(of: Mapping[str, float]) -> Finding:
+    text = (
+        f"holes: {of['hole']:+.2f} mm wider than the drawing's; at most {HOLE_MM:g} mm. Measure "
+        "the mask's rulers and holes"
+    )
+    return Finding("holes", text, times_limit=abs(of["hole"]) / HOLE_MM)
+
+
+def _direction(x_mm: float, y_mm: float) -> str:
+    side = "right" if x_mm > 0 else "left"
+    along = "towards the tip" if y_mm > 0 else "towards the gripper"
+    return f"{abs(x_mm):.2f} mm to the {side}, {abs(y_mm):.2f} mm {along}"
