@@ -27,6 +27,7 @@ TURN_DEG = 0.3
 STEADY, MOVING = 60, 300
 """Frames of a steady step, and of the sheet that is moved."""
 NOISE = 1.5
+_DEAD = 0.01  # light of a dead LED: some light reaches every cell
 _GAP_SD_MM = 0.1  # of fingers that are closed on the gauge
 
 
@@ -71,7 +72,7 @@ class Workshop:
             own[name][0, entry] += value
         pair = built(self._layout, self.model, own, 0)
         if fault.kind == "dead LED":
-            pair.led[list(fault.cells)] = 0.0
+            pair.led[list(fault.cells)] = _DEAD
         light = self._rays.of(pair)
         exposure = max(1.0 + float(own["exposure"][0, 0]), 0.2)
         detector = 1.0 + own["detector"][0]

@@ -3,7 +3,8 @@
 Half of the fingers have one injected fault; all have the spread of `tolerances.toml`, and the gauge
 lies 0.1 mm beside its place. A finger is out of tolerance if a true deviation is beyond the limits
 of `lumitip.acceptance.findings`, injected or not. It is named rightly if all of its faults are
-found, at their cells, and the first finding is one of them. The scattered share is compared with the mean of eight good fingers.
+found, at their cells, and the first finding is one of them. The scattered share is compared with
+the mean of eight good fingers.
 
 These fingers are drawn with the rays that the verdict is built on. `--second N` tries good fingers
 of the second optical model instead (`second_light`), which shares nothing with them.
