@@ -9,13 +9,12 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.result import Measurement, relative_margin, unreadable
 from lumitip_fab.checks.run import MODULES, Outcome, run_checks
 from lumitip_fab.cli.summary import (
     TABLES,
     parameters_of,
     print_summary,
-    relative_margin,
     tightest,
 )
 from lumitip_fab.config.load import load

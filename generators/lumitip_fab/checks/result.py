@@ -97,6 +97,32 @@ def _escaped(c: str) -> str:
     return c.encode("unicode_escape").decode()
 
 
+def relative_margin(measurement: Measurement) -> float | None:
+    """The margin as a share of what it could be, comparable across units.
+
+    0 is at the limit, negative is outside. The scale is
+
+    - half the range, where both limits bind: 1 is in the middle of the tolerance;
+    - the upper limit, for a magnitude that is at best 0: 1 is no deviation at all;
+    - the limit itself, where there is only one: 1 is twice a lower limit, or 0 for an upper one.
+
+    `None` where there is no such scale: exact values, a limit of 0, no limit, and figures that
+    could not be measured.
+    """
+    low, high, measured = measurement.low, measurement.high, measurement.measured
+    if math.isnan(measured) or low == high:
+        return None
+    if low == 0 <= measured:
+        scale = high
+    elif math.isfinite(low) and math.isfinite(high):
+        scale = (high - low) / 2
+    else:
+        scale = abs(low if math.isfinite(low) else high)
+    if scale == 0 or math.isinf(scale):
+        return None
+    return float(measurement.margin / scale)
+
+
 Check = Callable[[Path, Design], Iterator[Measurement]]
 """A check reads files below the output folder and holds them against `design.json`."""
 

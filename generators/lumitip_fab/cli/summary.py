@@ -2,14 +2,13 @@
 parameters to change, rated force, price."""
 
 import csv
-import math
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from rich.console import Console
 from rich.text import Text
 
-from lumitip_fab.checks.result import Measurement
+from lumitip_fab.checks.result import Measurement, relative_margin
 from lumitip_fab.checks.run import Outcome
 from lumitip_fab.cli.report import figure, tightness
 from lumitip_fab.design.encoding import read_design
@@ -17,32 +16,6 @@ from lumitip_fab.errors import OutputError
 from lumitip_fab.text import table_of
 
 TABLES = "cli/summary.toml"
-
-
-def relative_margin(measurement: Measurement) -> float | None:
-    """The margin as a share of what it could be, comparable across units.
-
-    0 is at the limit, negative is outside. The scale is
-
-    - half the range, where both limits bind: 1 is in the middle of the tolerance;
-    - the upper limit, for a magnitude that is at best 0: 1 is no deviation at all;
-    - the limit itself, where there is only one: 1 is twice a lower limit, or 0 for an upper one.
-
-    `None` where there is no such scale: exact values, a limit of 0, no limit, and figures that
-    could not be measured.
-    """
-    low, high, measured = measurement.low, measurement.high, measurement.measured
-    if math.isnan(measured) or low == high:
-        return None
-    if low == 0 <= measured:
-        scale = high
-    elif math.isfinite(low) and math.isfinite(high):
-        scale = (high - low) / 2
-    else:
-        scale = abs(low if math.isfinite(low) else high)
-    if scale == 0 or math.isinf(scale):
-        return None
-    return float(measurement.margin / scale)
 
 
 def tightest(
