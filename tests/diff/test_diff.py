@@ -201,6 +201,10 @@ def test_a_check_that_fails_in_one_alone_is_first_and_kept_results_are_used(
     assert found["fails_a"] == []
     assert "layout" in measured
     assert not {"board", "orders", "mould", "backing"} & set(measured)
+    page = (tmp_path / "diff" / "diff.html").read_text(encoding="utf-8")
+    assert "Fails in B alone" in page
+    assert str(tmp_path) not in page + json.dumps(found)  # notes name files by their paths
+    assert "channel: a list of" in page
     lines = capsys.readouterr().out.splitlines()
     assert lines[2].startswith("checks        B alone FAILS ")
 

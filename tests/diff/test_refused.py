@@ -1,5 +1,6 @@
 """Inputs of `lumitip-fab diff` that cannot be compared: one clear error, and nothing is written."""
 
+import json
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +18,22 @@ def _cut(path: str) -> Callable[[Path], None]:
         file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
 
     return cut
+
+
+def _edit(path: str, old: str, new: str) -> Callable[[Path], None]:
+    def edit(out: Path) -> None:
+        text = (out / path).read_text(encoding="utf-8")
+        assert old in text
+        (out / path).write_text(text.replace(old, new), encoding="utf-8")
+
+    return edit
+
+
+def _frame(out: Path) -> None:
+    """Stretch the frame of a board."""
+    record = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+    record["files"]["boards/emitter/emitter.kicad_pcb"]["to_sensor"][0][0] = 2.0
+    (out / "manifest.json").write_text(json.dumps(record), encoding="utf-8")
 
 
 def _open(out: Path) -> None:
@@ -38,15 +55,20 @@ DAMAGES: dict[str, tuple[Callable[[Path], None], str]] = {
     "cables": (_cut("wiring/cables.csv"), "wiring/cables.csv: cannot be read"),
     "mesh": (_cut("mould/prop.stl"), "mould/prop.stl: cannot be read"),
     "open mesh": (_open, "mould/prop.stl: cannot be read"),
+    "price": (_edit("bom.csv", ",0.20\n", ",much\n"), "bom.csv: cannot be read"),
+    "column": (_edit("bom.csv", "quantity", "number"), "no row with quantity"),
+    "no rows": (lambda out: (out / "order.csv").write_text("item,price\n"), "no row with price"),
+    "total": (_edit("bom.csv", "total,", "sum,"), "bom.csv: cannot be read (no total)"),
+    "endless": (_edit("wiring/cables.csv", ",250,", ",inf,"), "length_mm is inf"),
+    "facts": (_edit("manifest.json", '"mix_ml"', '"mix"'), "manifest.json: cannot be read"),
+    "frame": (_frame, "to_sensor is no rotation"),
     "board": (_cut("boards/flange/flange.kicad_pcb"), "flange.kicad_pcb: cannot be read"),
 }
 
 
 @pytest.mark.parametrize("damage", DAMAGES)
-@pytest.mark.parametrize("first", [True, False])
 def test_a_damaged_folder_is_named_and_nothing_is_written(
     damage: str,
-    first: bool,
     outputs: Path,
     damaged: Path,
     tmp_path: Path,
@@ -54,15 +76,15 @@ def test_a_damaged_folder_is_named_and_nothing_is_written(
 ) -> None:
     change, reason = DAMAGES[damage]
     change(damaged)
-    pair = (damaged, outputs) if first else (outputs, damaged)
     out = tmp_path / "diff"
-    assert main(["diff", *map(str, pair), "--out", str(out), "--no-checks"]) == 2
-    printed = capsys.readouterr()
-    assert printed.err.count("\n") == 1
-    assert reason in printed.err
-    assert str(damaged) in printed.err
-    assert printed.out == ""
-    assert not out.exists()
+    for pair in ((damaged, outputs), (outputs, damaged)):
+        assert main(["diff", *map(str, pair), "--out", str(out), "--no-checks"]) == 2
+        printed = capsys.readouterr()
+        assert printed.err.count("\n") == 1
+        assert reason in printed.err
+        assert str(damaged) in printed.err
+        assert printed.out == ""
+        assert not out.exists()
 
 
 def test_a_path_that_is_nothing_is_named(

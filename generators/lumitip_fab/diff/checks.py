@@ -5,6 +5,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +29,17 @@ def outcomes(a: Folder, b: Folder) -> tuple[Outcome, Outcome]:
             if (folder.out / MEMORY).is_file():
                 shutil.copyfile(folder.out / MEMORY, memory)
             known = Memory(memory, folder.out, [folder.out / name for name in (MEMORY, *REPORTS)])
-            measured.append(run_checks(folder.out, MODULES, known, os.cpu_count() or 1))
+            outcome = run_checks(folder.out, MODULES, known, os.cpu_count() or 1)
+            measured.append(Outcome(tuple(_unplaced(m, a, b) for m in outcome.measurements)))
     return measured[0], measured[1]
+
+
+def _unplaced(m: Measurement, *folders: Folder) -> Measurement:
+    """A measurement without the paths of both folders: reports are the same wherever they are."""
+    note = m.note
+    for folder in folders:
+        note = note.replace(f"{folder.out}/", "")
+    return replace(m, note=note)
 
 
 def check_differences(a: Outcome, b: Outcome) -> dict[str, Any]:

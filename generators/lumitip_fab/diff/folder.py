@@ -1,5 +1,6 @@
 """An output folder, read and tested before anything is compared."""
 
+import math
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -18,6 +19,7 @@ from lumitip_fab.pipeline.manifest import Manifest
 
 PARAMETERS, BILL, ORDER, CABLES = "resolved.toml", "bom.csv", "order.csv", "wiring/cables.csv"
 _NEEDED = ("design.json", PARAMETERS, BILL, ORDER, CABLES)
+_ROBOT = "robot/"
 REPORTS = ("checks.json", "checks.xml")
 """Files that `make outputs` writes beside those of the build."""
 
@@ -45,19 +47,32 @@ class Folder:
         return [p for p, found in self.sha256.items() if p in built and built[p].sha256 != found]
 
     def paths(self, ending: str) -> set[str]:
-        """Its files with an ending."""
-        return {path for path in self.sha256 if path.endswith(ending)}
+        """Its files with an ending, but for the meshes for simulators."""
+        paths = (path for path in self.sha256 if path.endswith(ending))
+        return {path for path in paths if not path.startswith(_ROBOT)}
 
-    def rows(self, path: str) -> list[dict[str, str]]:
-        """The rows of one of its tables.
+    def rows(self, path: str, number: str, *needed: str) -> list[dict[str, str]]:
+        """The rows of one of its tables; the file has one row or more.
+
+        Args:
+            path: of the file.
+            number: a column of finite numbers; it may be empty in a row.
+            needed: further columns that the file must have.
 
         Raises:
-            OutputError: if the file is no table.
+            OutputError: if the file is no such table.
         """
         try:
-            return table((self.out / path).read_text(encoding="utf-8"))
+            rows = table((self.out / path).read_text(encoding="utf-8"))
+            lacking = {number, *needed} - {column for row in rows[:1] for column in row}
+            if lacking:
+                raise ValueError(f"no row with {min(lacking)}")
+            wrong = [row[number] for row in rows if not math.isfinite(float(row[number] or 0))]
         except (OSError, ValueError) as error:
             raise self.damaged(path, error) from error
+        if wrong:
+            raise self.damaged(path, f"{number} is {wrong[0]}")
+        return rows
 
     def damaged(self, path: str, reason: object) -> OutputError:
         """The error for a file that cannot be compared."""
@@ -95,11 +110,26 @@ def read_folder(out: Path, name: str) -> Folder:
     ]
     sha256 = {path: str(manifest.sha256_of(out / path)) for path in paths}
     folder = Folder(out, name, design, recorded, {}, {}, sha256)
+    _require_frames(folder)
     try:
         parameters, parts = _values((out / PARAMETERS).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise folder.damaged(PARAMETERS, error) from error
     return Folder(out, name, design, recorded, parameters, parts, sha256)
+
+
+def _require_frames(folder: Folder) -> None:
+    """The matrices of parts and boards turn and move, and no more."""
+    shapes = folder.paths(".stl") | folder.paths(".kicad_pcb")
+    entries = [e for path, e in folder.manifest.files.items() if path in shapes]
+    try:
+        matrices = np.array([entry.to_sensor for entry in entries], dtype=float)
+        turns = matrices.reshape(-1, 4, 4)[:, :3, :3]
+        exact = np.allclose(turns @ turns.transpose(0, 2, 1), np.eye(3), atol=1e-6)
+    except (TypeError, ValueError) as error:
+        raise folder.damaged(manifest.NAME, error) from error
+    if not exact:
+        raise folder.damaged(manifest.NAME, "a matrix to_sensor is no rotation")
 
 
 def _values(text: str) -> tuple[dict[str, Any], dict[str, Any]]:

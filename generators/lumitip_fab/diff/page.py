@@ -95,7 +95,7 @@ def _more(a: Any, b: Any) -> str:
     if any(isinstance(v, bool) or not isinstance(v, int | float) for v in (a, b)):
         return ""
     share = f" ({100 * (b - a) / abs(a):+.1f} %)" if a else ""
-    return f"{b - a:+.4g}{share}".replace("-", "−")
+    return f"{b - a:+.4g}{share}".replace("-", "−").replace(" ", "\u00a0")
 
 
 def _checks(checks: dict[str, Any] | None) -> Iterator[str]:
@@ -118,15 +118,15 @@ def _check_table(entries: list[dict[str, Any]]) -> str:
     rows = []
     for entry in entries:
         both = [entry[side] or {} for side in "ab"]
-        first = next(each for each in both if each)
-        limits = list(dict.fromkeys(each["limit"] for each in both if each))
-        measured = [
-            f"{shown(each.get('measured'))}{'' if each.get('passed', True) else ' {FAILS}'}"
-            for each in both
-        ]
+        worst = min((each for each in both if each), key=lambda each: bool(each["passed"]))
+        note = f": {worst['note']}" if worst["note"] and not worst["passed"] else ""
+        known = [each for each in both if each.get("measured") is not None]
+        limits = dict.fromkeys(each["limit"] for each in known or [worst])
+        marks = ["" if each.get("passed", True) else f"\u00a0{FAILS}" for each in both]
+        measured = [shown(b.get("measured")) + mark for b, mark in zip(both, marks, strict=True)]
         margins = [percent(each.get("margin")) for each in both]
-        limit = f"{' → '.join(limits)} {first['unit']}"
-        rows.append((entry["check"], *measured, limit, *margins, first["subject"]))
+        limit = f"{' → '.join(limits)} {worst['unit']}"
+        rows.append((entry["check"], *measured, limit, *margins, f"{worst['subject']}{note}"))
     return _table(("check", "A", "B", "limit", "margin A", "margin B", "file"), rows)
 
 

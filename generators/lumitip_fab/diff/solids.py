@@ -16,7 +16,6 @@ from lumitip_fab.parts.surface import Mesh
 
 LEAST_MM3 = 0.01
 """Volumes below are not drawn: STL keeps 24 bits of a coordinate."""
-_ROBOT = "robot/"  # meshes for simulators: not printed
 
 
 def part_differences(a: Folder, b: Folder) -> Iterator[Shape]:
@@ -26,7 +25,7 @@ def part_differences(a: Folder, b: Folder) -> Iterator[Shape]:
         OutputError: if a file is no closed body.
     """
     for path in sorted(a.paths(".stl") | b.paths(".stl")):
-        if path.startswith(_ROBOT) or a.sha256.get(path) == b.sha256.get(path):
+        if a.sha256.get(path) == b.sha256.get(path):
             continue
         first, second = _body(a, path), _body(b, path)
         if first is None or second is None:

@@ -1,6 +1,5 @@
 """Parameters, facts, lines of the bill, and files that differ; the record of a shape that does."""
 
-import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -9,6 +8,7 @@ from typing import Any
 from lumitip_fab.config.schema import UNITS
 from lumitip_fab.diff.folder import BILL, CABLES, ORDER, Folder
 from lumitip_fab.docs import spec
+from lumitip_fab.pipeline import manifest
 
 Entry = dict[str, Any]
 """`name`, `unit`, and the values `a` and `b`; none where one has no such value."""
@@ -134,33 +134,39 @@ def _unit(name: str) -> str:
 
 
 def _numbers(folder: Folder) -> dict[tuple[str, str], float]:
-    """Masses, counts, prices and lengths by name and unit."""
+    """Masses, counts, lengths and prices by name and unit."""
+    try:
+        found = dict(_made(folder))
+    except (LookupError, TypeError, ValueError, AttributeError) as error:
+        raise folder.damaged(manifest.NAME, error) from error
+    found["cells", ""] = len(folder.design.layout)
+    lengths_mm: dict[str, float] = {}
+    rows = folder.rows(CABLES, "length_mm", "wire")
+    for row in rows:
+        name = row["wire"].partition(".")[0]
+        lengths_mm[name] = lengths_mm.get(name, 0.0) + float(row["length_mm"] or 0)
+    found["wires", ""] = len(rows)
+    found |= {(f"wire in cable {name}", "mm"): length for name, length in lengths_mm.items()}
+    currency = folder.design.purchase.currency
+    found["sum of the bill, as used", currency] = _bill_total(folder)
+    last = folder.rows(ORDER, "price")[-1]
+    found["sum of the order, in whole packs", currency] = float(last["price"] or 0)
+    return found
+
+
+def _made(folder: Folder) -> Iterator[tuple[tuple[str, str], float]]:
+    """Figures that the manifest keeps of files."""
     files = folder.manifest.files
-    found: dict[tuple[str, str], float] = {}
     for name, grams in files["robot/lumitip.urdf"].facts.items():
-        found[f"mass of the {name.removesuffix('_g')} finger", "g"] = round(grams, 2)
+        yield (f"mass of the {name.removesuffix('_g')} finger", "g"), round(grams, 2)
     for path, entry in files.items():
         what = path.rpartition("/")[2].partition(".")[0]
         if path.endswith("_casting.md"):
             finger = what.removesuffix("_casting")
-            found[f"silicone to mix for the {finger}", "mL"] = round(entry.facts["mix_ml"], 2)
+            yield (f"silicone to mix for the {finger}", "mL"), round(entry.facts["mix_ml"], 2)
         elif "parts" in entry.facts:
             count = sum(int(part["quantity"]) for part in entry.facts["parts"])
-            found[f"parts on the {what} board", ""] = count
-    found["cells", ""] = len(folder.design.layout)
-    lengths: dict[str, float] = {}
-    rows = folder.rows(CABLES)
-    for row in rows:
-        name = row["wire"].partition(".")[0]
-        lengths[name] = lengths.get(name, 0.0) + _number(folder, CABLES, row["length_mm"])
-    found["wires", ""] = len(rows)
-    for cable, length_mm in lengths.items():
-        found[f"wire in cable {cable}", "mm"] = length_mm
-    currency = folder.design.purchase.currency
-    found["sum of the bill, as used", currency] = _bill_total(folder)
-    last = folder.rows(ORDER)[-1]
-    found["sum of the order, in whole packs", currency] = _number(folder, ORDER, last["price"])
-    return found
+            yield (f"parts on the {what} board", ""), count
 
 
 def _texts(folder: Folder) -> dict[str, str]:
@@ -168,22 +174,18 @@ def _texts(folder: Folder) -> dict[str, str]:
 
 
 def _lines(folder: Folder) -> list[Row]:
-    return [row for row in folder.rows(BILL) if row.get("group") != _TOTAL]
+    return [row for row in _bill(folder) if row["group"] != _TOTAL]
+
+
+def _bill(folder: Folder) -> list[Row]:
+    return folder.rows(BILL, "price", *_SAME_LINE[0], "quantity", "unit")
 
 
 def _bill_total(folder: Folder) -> float:
-    totals = [row["price"] for row in folder.rows(BILL) if row.get("group") == _TOTAL]
-    return _number(folder, BILL, totals[-1] if totals else "no total")
-
-
-def _number(folder: Folder, path: str, text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError as error:
-        raise folder.damaged(path, error) from error
-    if not math.isfinite(value):
-        raise folder.damaged(path, f"{text} is no finite number")
-    return value
+    totals = [row["price"] for row in _bill(folder) if row["group"] == _TOTAL]
+    if not totals:
+        raise folder.damaged(BILL, "no total")
+    return float(totals[-1] or 0)
 
 
 def _matched(
@@ -192,8 +194,8 @@ def _matched(
     """Pairs of lines with the same values in these columns, which no other line has; they are taken
     out of both lists."""
 
-    def key(row: Row) -> tuple[str | None, ...]:
-        return tuple(row.get(column) for column in columns)
+    def key(row: Row) -> tuple[str, ...]:
+        return tuple(row[column] for column in columns)
 
     firsts, seconds = _unique(one, key), _unique(other, key)
     common = [k for k in firsts if k in seconds]
