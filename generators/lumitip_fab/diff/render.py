@@ -66,7 +66,7 @@ def _picture(bodies: Mapping[str, Mesh], seen_by: View) -> bytes:
 
 
 def _seen(corners: Array, shape: tuple[int, ...]) -> tuple[Array, Array, Array]:
-    """What is seen of a body in each pixel.
+    """The nearest surface of a body in each pixel.
 
     Args:
         corners: of its triangles, shape `(n, 3, 3)`: x and y in pixels, height above the page (mm).

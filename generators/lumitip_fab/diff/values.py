@@ -33,18 +33,18 @@ class Shape:
     sizes: tuple[float | None, float | None]
     """Of A and of B; none where there is no such thing."""
     only: tuple[float, float]
-    """What A alone fills, and B alone."""
+    """Volume or area that A alone fills, and B alone."""
     picture: str = ""
     """HTML; empty where nothing is drawn."""
 
     @classmethod
     def alone(cls, name: str, unit: str, a: float | None, b: float | None) -> "Shape":
-        """What one design alone has."""
+        """A part or layer that one design alone has."""
         return cls(name, unit, (a, b), (a or 0.0, b or 0.0))
 
     @property
     def xor(self) -> float:
-        """What one of both alone fills."""
+        """Volume or area that exactly one of both fills."""
         return sum(self.only)
 
     def record(self) -> dict[str, Any]:
