@@ -81,6 +81,7 @@ EDITS = [
     (INI, "max_fan_speed = 50", "max_fan_speed = 0", {"settings"}),
     (INI, "retract_length = 0.8", "retract_length = 8", {"settings"}),
     (NOTE, "| `mould/emitter_mould.3mf`", "| `mould/emitter_cast.3mf`", {"parts"}),
+    (NOTE, "| `gauge/gauge_card.3mf`", "| `gauge/card.3mf`", {"parts"}),
     (NOTE, "petg.ini` | PETG | 0.2 mm | on", "pla.ini` | PLA | 0.2 mm | on", {"parts"}),
     (NOTE, "`print/petg_mould.ini` | PETG | 0.15", "`print/petg.ini` | PETG | 0.2", {"parts"}),
     (NOTE, "petg_mould.ini` | PETG | 0.15", "petg_mould.ini` | PETG | 0.2", {"parts"}),

@@ -96,7 +96,8 @@ def _wanted(design: Design, filament: Filament) -> dict[str, str]:
 
 
 def _parts(outputs: Path, design: Design) -> Measurement:
-    """Every printed part of a finger is listed with settings, filament and layers, none else."""
+    """Every printed part of a finger and the gauge card are listed with settings, filament and
+    layers, none else."""
     try:
         text = (outputs / _NOTE).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as problem:
@@ -106,7 +107,8 @@ def _parts(outputs: Path, design: Design) -> Measurement:
     kinds = ("backing", *(["interface"] if design.interfaces else []), "mould")
     fingers = design.fingers
     paths = [f"{kind}/{finger.name}_{kind}.3mf" for kind in kinds for finger in fingers]
-    paths += [part.file.replace(".stl", ".3mf") for part in design.mould_accessories]
+    others = (*design.mould_accessories, *design.gauge_cards)
+    paths += [part.file.replace(".stl", ".3mf") for part in others]
     paths += [*(f"mask/{finger.name}_sheet.3mf" for finger in fingers), "mask/coupon.3mf"]
     wanted = {
         (path, of.file, of.name, f"{of.layer_mm:g}")
