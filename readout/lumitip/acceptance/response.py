@@ -39,6 +39,7 @@ DEVIATIONS = (
     Deviation("emitter_y", "emitter's mask towards the tip", "mm", 1.0, 0.1),
     Deviation("emitter_turn", "emitter's mask turned left", "deg", 5.0, 0.5),
     Deviation("gap", "gap beyond the gauge's", "mm", 1.5, 0.2),
+    Deviation("tilt", "gap grows towards the tip", "deg", 1.5, 0.3),
     Deviation("scatter", "scattered share of the light", "", 0.4, 0.1),
     Deviation("receiver_silicone", "receiver's silicone thicker", "mm", 0.1, 0.14),
     Deviation("emitter_silicone", "emitter's silicone thicker", "mm", 0.1, 0.14),
@@ -143,7 +144,8 @@ class Response:
                 ("receiver", model.detector_depth_mm),
             )
         ]
-        half = self._gap_mm(deviations) / 2.0 * each
+        tilted = np.tan(np.radians(of["tilt"])) * self._layout.y_mm
+        half = np.maximum(self._gap_mm(deviations) + tilted, _LEAST_GAP_MM) / 2.0
         hole = max(model.hole_mm + of["hole"], _LEAST_HOLE_MM)
         return self._rays.of(
             Built(

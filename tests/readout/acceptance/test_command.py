@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from acceptance_frames import Bench, record
+from lumitip.acceptance.report import Circumstances, page
+from lumitip.acceptance.verdict import Judge
 from lumitip.calibration import Calibration
 from lumitip.cli import main
 from lumitip.links import twin
@@ -60,25 +62,26 @@ def test_good_fingers_are_accepted_reported_and_calibrated(
     gauge_file: Path, tmp_path: Path, bench: Bench, monkeypatch, capsys
 ) -> None:
     hands = Hands(monkeypatch, bench)
-    out = tmp_path / "report"
+    out = tmp_path / "out"
     assert main(arguments(gauge_file, out)) == 0
     assert len(hands.asked) == 7
-    assert "end S of the gauge between the fingers, its rails round the emitter" in hands.asked[6]
+    assert "the end with the strip (S) of the gauge" in hands.asked[6]
+    assert "its rails round the emitter" in hands.asked[6]
     assert "ACCEPTED" in capsys.readouterr().out.splitlines()
-    told = json.loads((out / "acceptance.json").read_text())
-    assert told["accepted"] is True
-    assert told["design_hash"] == LAYOUT.design_hash
-    assert told["gauge_sha256"] == hashlib.sha256(gauge_file.read_bytes()).hexdigest()
+    report = json.loads((out / "acceptance.json").read_text())
+    assert report["accepted"] is True
+    assert report["design_hash"] == LAYOUT.design_hash
+    assert report["gauge_sha256"] == hashlib.sha256(gauge_file.read_bytes()).hexdigest()
     data = (out / "frames.npz").read_bytes()
-    assert told["frames"]["sha256"] == hashlib.sha256(data).hexdigest()
+    assert report["frames"]["sha256"] == hashlib.sha256(data).hexdigest()
     with np.load(out / "frames.npz") as kept:
-        for name, step in told["frames"]["steps"].items():
+        for name, step in report["frames"]["steps"].items():
             assert step["frames"] == len(kept[name])
             assert step["sha256"] == hashlib.sha256(kept[name].tobytes()).hexdigest()
-    assert {"lumitip", "numpy", "python"} <= set(told["versions"])
-    saved = Calibration.kept(told["device_id"], LAYOUT.design_hash, 32)
+    assert {"lumitip", "numpy", "python"} <= set(report["versions"])
+    saved = Calibration.kept(report["device_id"], LAYOUT.design_hash, 32)
     assert saved.empty is not None
-    assert saved.empty.tolist() == pytest.approx(told["calibration"]["empty"], abs=0.01)
+    assert saved.empty.tolist() == pytest.approx(report["calibration"]["empty"], abs=0.01)
     assert saved.dark is not None
     page = (out / "acceptance.html").read_text()
     assert page.count("<circle") == 32
@@ -91,28 +94,32 @@ def test_fingers_that_are_not_accepted_are_not_calibrated(
     gauge_file: Path, tmp_path: Path, bench: Bench, monkeypatch, capsys
 ) -> None:
     Hands(monkeypatch, bench, receiver_x=1.4)
-    out = tmp_path / "report"
+    out = tmp_path / "out"
     assert main(arguments(gauge_file, out)) == 1
     printed = capsys.readouterr().out
     assert "receiver's mask: 1." in printed
     assert "NOT accepted" in printed.splitlines()
-    told = json.loads((out / "acceptance.json").read_text())
-    assert [finding["kind"] for finding in told["findings"]] == ["receiver mask"]
-    assert told["deviations"]["receiver_x"]["value"] == pytest.approx(1.4, abs=0.15)
-    assert Calibration.kept(told["device_id"], LAYOUT.design_hash, 32).empty is None
+    report = json.loads((out / "acceptance.json").read_text())
+    assert [finding["kind"] for finding in report["findings"]] == ["receiver mask"]
+    assert report["deviations"]["receiver_x"]["value"] == pytest.approx(1.4, abs=0.15)
+    assert Calibration.kept(report["device_id"], LAYOUT.design_hash, 32).empty is None
     assert "not accepted" in (out / "acceptance.html").read_text()
-    # Its report is no reference with deviations of another kind of file.
-    assert main([*arguments(gauge_file, out), "--reference", str(gauge_file)]) == 2
-    assert "cannot be read as the report of accepted fingers" in capsys.readouterr().err
+    command = arguments(gauge_file, tmp_path / "next")
+    for other in (gauge_file, out / "acceptance.json"):
+        assert main([*command, "--reference", str(other)]) == 2
+        assert "as the report of accepted fingers of this design" in capsys.readouterr().err
+    assert not (tmp_path / "next").exists()
+    assert main(arguments(gauge_file, out)) == 2
+    assert "has a report already. Choose another folder" in capsys.readouterr().err
 
 
 def test_the_gauge_of_another_design_is_refused_before_the_first_step(
     gauge_file: Path, tmp_path: Path, capsys
 ) -> None:
     gauge_file.write_text(json.dumps(record() | {"design_hash": "0" * 64}), encoding="utf-8")
-    assert main(arguments(gauge_file, tmp_path / "report")) == 2
+    assert main(arguments(gauge_file, tmp_path / "out")) == 2
     assert "the gauge is of design 0000" in capsys.readouterr().err
-    assert not (tmp_path / "report").exists()
+    assert not (tmp_path / "out").exists()
 
 
 def test_without_a_keyboard_nothing_is_written(
@@ -122,6 +129,29 @@ def test_without_a_keyboard_nothing_is_written(
         raise EOFError
 
     monkeypatch.setattr("builtins.input", closed)
-    assert main(arguments(gauge_file, tmp_path / "report")) == 2
+    assert main(arguments(gauge_file, tmp_path / "out")) == 2
     assert "run it in a terminal" in capsys.readouterr().err
-    assert not (tmp_path / "report").exists()
+    assert not list((tmp_path / "out").iterdir())
+
+
+def test_an_output_folder_that_is_a_file_is_refused_before_the_first_step(
+    gauge_file: Path, tmp_path: Path, capsys
+) -> None:
+    (tmp_path / "out").write_text("mine", encoding="utf-8")
+    assert main(arguments(gauge_file, tmp_path / "out")) == 2
+    assert "the report cannot be written" in capsys.readouterr().err
+    assert (tmp_path / "out").read_text(encoding="utf-8") == "mine"
+
+
+def test_names_from_outside_are_no_markup(bench: Bench, judge: Judge) -> None:
+    judged = judge(bench.frames())
+    made = Circumstances("<b>&", "2026-11-27", b"", {"lumitip": "<i>"})
+    record = {
+        **{"device_id": "<b>&", "date": made.date, "design_hash": "0", "deviations": {}},
+        **{"reference": None, "gauge_sha256": "", "frames": {"sha256": ""}},
+        "versions": made.versions,
+    }
+    text = page(record, judged, LAYOUT)
+    assert "&lt;b&gt;&amp;: <span" in text
+    assert "<b>" not in text
+    assert "<i>" not in text

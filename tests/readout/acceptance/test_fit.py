@@ -21,6 +21,7 @@ from lumitip.twin.built import Piece
         ("emitter_y", 0.7, 0.2),
         ("gap", 1.2, 0.1),
         ("gap", -0.8, 0.15),
+        ("tilt", 2.0, 0.4),
         ("scatter", -0.4, 0.05),
         ("hole", 0.4, 0.12),
         ("finger_x", 0.3, 0.1),
@@ -40,6 +41,7 @@ def test_a_single_cell_that_misfits_does_not_bend_the_result(bench: Bench, judge
     for part in frames.gauge:
         part[:, 13] = 100.0
     found = judge(frames)
+    assert [(f.kind, f.cells) for f in found.findings] == [("odd", (13,))]
     assert found.deviations["receiver_x"] == pytest.approx(0.5, abs=0.12)
 
 

@@ -51,11 +51,25 @@ def test_every_fault_is_named_at_once() -> None:
         assert part in text
 
 
+def test_both_ends_on_both_fingers_within_the_gap_are_needed() -> None:
+    wrong = record()
+    wrong["gap_mm"] = 2.9
+    wrong["placements"] = wrong["placements"][:1]
+    with pytest.raises(GaugeError) as caught:
+        Gauge.from_json(json.dumps(wrong))
+    text = str(caught.value)
+    assert 'no placement has kind "strip"; each kind is needed' in text
+    assert 'no placement has on "emitter"; each on is needed' in text
+    assert "a placement's high_mm is above gap_mm" in text
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
         ("", "no JSON"),
         ("[]", "an object is needed"),
+        ("[" * 100_000, "no JSON"),
+        ('{"schema_version": true}', "schema_version is True; this version reads 1"),
         ('{"schema_version": 2}', "schema_version is 2; this version reads 1"),
         (json.dumps(record() | {"placements": []}), "a list of one or more is needed"),
         (json.dumps(record() | {"gap_mm": float("nan")}), "gap_mm is nan"),
@@ -68,5 +82,5 @@ def test_other_files_are_refused(text: str, message: str) -> None:
 
 
 def test_a_missing_file_says_who_writes_it(tmp_path: Path) -> None:
-    with pytest.raises(GaugeError, match=r"`lumitip-fab build` writes it beside layout\.json"):
+    with pytest.raises(GaugeError, match=r"`lumitip-fab build` writes it beside layout\.json, if"):
         Gauge.load(tmp_path / "gauge.json")

@@ -11,6 +11,7 @@ from lumitip.acceptance.gauge import Gauge, GaugeError
 from lumitip.acceptance.steps import Frames
 from lumitip.acceptance.verdict import Judge, Verdict
 from lumitip.errors import ArgumentError
+from lumitip.layout import Layout
 from lumitip.links.twin import published_layout
 
 
@@ -98,6 +99,42 @@ def test_a_faulty_cell_is_named_and_the_others_are_judged(
     assert verdict.deviations["receiver_x"] == pytest.approx(0.4, abs=0.1)
 
 
+@pytest.mark.slow
+def test_cells_that_are_bridged_are_named(bench: Bench, judge: Judge) -> None:
+    def bridge(frames: np.ndarray) -> None:
+        frames[:, [13, 17]] = frames[:, [13, 17]].mean(axis=1, keepdims=True)
+
+    verdict = judge(damaged(bench.frames(), bridge))
+    assert {(f.kind, f.cells) for f in verdict.findings} == {("odd", (13,)), ("odd", (17,))}
+    assert "A bridge to another cell" in verdict.findings[0].text
+
+
+@pytest.mark.parametrize(
+    ("kind", "change", "words"),
+    [
+        ("exposure", lambda light: np.minimum(4.0 * light, 255.0), "too large"),
+        ("exposure", lambda light: 0.3 * light, "too small"),
+        ("leak", lambda light: 255.0 - light, "steps 1 and 2 were exchanged"),
+    ],
+)
+def test_light_that_is_wrong_everywhere_is_one_finding(
+    bench: Bench, judge: Judge, kind: str, change: Callable[[np.ndarray], np.ndarray], words: str
+) -> None:
+    def everywhere(frames: np.ndarray) -> None:
+        frames[:] = change(frames)
+
+    verdict = judge(damaged(bench.frames(), everywhere))
+    [text] = [finding.text for finding in verdict.findings if finding.kind == kind]
+    assert words in text
+
+
+def test_flicker_in_a_steady_step_is_noise(bench: Bench, judge: Judge) -> None:
+    frames = bench.frames()
+    flicker = np.where(np.arange(len(frames.empty)) % 2, 20.0, -20.0)[:, None].astype(np.float32)
+    verdict = judge(replace(frames, empty=frames.empty - 20.0 + flicker))
+    assert set(kinds(verdict)) == {"noisy"}
+
+
 def test_a_gauge_put_in_the_wrong_way_round_is_unexplained(bench: Bench, judge: Judge) -> None:
     frames = bench.frames()
     verdict = judge(replace(frames, gauge=(*frames.gauge[2:], *frames.gauge[:2])))
@@ -110,6 +147,9 @@ def test_a_sheet_that_does_not_move_is_not_accepted(bench: Bench, judge: Judge) 
     verdict = judge(replace(frames, moving=np.concatenate([frames.empty] * 3)))
     assert not verdict.accepted
     assert verdict.unseen is not None
+    assert "the sheet moved over 0% of the cells" in verdict.unseen
+    assert judge.unseen(frames.empty, frames.sheet, frames.moving[:15]) is not None
+    assert judge.unseen(frames.empty, frames.sheet, frames.moving) is None
 
 
 def test_another_design_is_refused(gauge: Gauge) -> None:
@@ -123,3 +163,12 @@ def test_frames_of_other_cells_or_placements_are_refused(bench: Bench, judge: Ju
         judge(replace(frames, gauge=frames.gauge[:3]))
     with pytest.raises(ArgumentError, match=r"sheet has shape \(40, 31\); \(2 or more, 32\)"):
         judge(replace(frames, sheet=frames.sheet[:, :31]))
+    frames.moving[3, 4] = np.nan
+    with pytest.raises(ArgumentError, match="moving has values that are not finite"):
+        judge(frames)
+
+
+def test_few_cells_are_refused_at_once(gauge: Gauge, make_layout: Callable[..., Layout]) -> None:
+    layout = make_layout((2, 3))
+    with pytest.raises(GaugeError, match="the fingertip has 5 cells; 8 are needed"):
+        Judge(layout, replace(gauge, design_hash=layout.design_hash))
