@@ -106,7 +106,7 @@ class Response:
 
     def _read(self, deviations: Floats, light: Light, drive: Floats) -> Floats:
         of = named(deviations[: len(NAMES)])
-        empty = values_of_drive(drive, self.model)
+        empty = np.maximum(values_of_drive(drive, self.model), 1.0)
         rows = []
         for placement, play_mm in zip(
             self._gauge.placements, deviations[len(NAMES) :].tolist(), strict=True

@@ -104,7 +104,8 @@ class Judge:
         if usable.sum() >= LEAST_CELLS and not any(f.cells == () for f in findings):
             fitted = self._fit(frames, usable)
             odd = odd_cells(fitted.residual, places.misfit, usable)
-            if odd and self._usable([*findings, *odd]).sum() >= LEAST_CELLS:
+            # If many cells misfit, it is no fault of cells.
+            if 0 < len(odd) <= usable.sum() // 4:
                 findings += odd
                 fitted = self._fit(frames, self._usable(findings))
             findings += faults_of_fingers(fitted, reference)

@@ -21,7 +21,7 @@ from lumitip.twin.built import Piece
         ("emitter_y", 0.7, 0.2),
         ("gap", 1.2, 0.1),
         ("gap", -0.8, 0.15),
-        ("tilt", 2.0, 0.4),
+        ("tilt", 2.0, 0.8),
         ("scatter", -0.4, 0.05),
         ("hole", 0.4, 0.12),
         ("finger_x", 0.3, 0.1),
