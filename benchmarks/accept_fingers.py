@@ -28,6 +28,7 @@ STEADY, MOVING = 60, 300
 """Frames of a steady step, and of the sheet that is moved."""
 NOISE = 1.5
 _DEAD = 0.01  # light of a dead LED: some light reaches every cell
+_DRIFTED = 0.5  # assumed
 _GAP_SD_MM = 0.1  # of fingers that are closed on the gauge
 
 
@@ -84,8 +85,8 @@ class Workshop:
         def steady(share: Floats, at: Floats) -> Values:
             return self._read(np.tile(share, (STEADY, 1)), at, chance)
 
-        # Gains drift by as much as since a tare, once for all steps after the first.
-        later = drive * np.maximum(1.0 + own["drift"][0], 0.2)
+        # Gains drift after the first step, within ten minutes by half as much as since a tare.
+        later = drive * np.maximum(1.0 + _DRIFTED * own["drift"][0], 0.2)
         states = {
             "empty": steady(np.ones(len(self._layout)), drive),
             "sheet": steady(np.full(len(self._layout), 1e-3), later),

@@ -7,7 +7,6 @@ from lumitip.acceptance.findings import (
     LEAST_LIGHT,
     MOST_LIGHT,
     NOISE,
-    ODD,
     WEAK,
     Finding,
     cell_names,
@@ -18,8 +17,6 @@ from lumitip.grid import Floats
 from lumitip.health.doctor import examine
 from lumitip.health.swaps import Mask
 from lumitip.layout import Layout
-
-_MOVING_TIMES = 1.6  # an rms over few frames with an edge against a mean over all
 
 
 def level(frames: Values) -> Values:
@@ -95,23 +92,20 @@ def swap(pair: tuple[int, int]) -> Finding:
     return Finding("swapped", text, pair)
 
 
-def odd_cells(residual: Floats, moving: Floats | None, usable: Mask) -> list[Finding]:
-    """Cells that do not fit, where all others do.
+def odd_cells(off: Floats, most: float, usable: Mask) -> list[Finding]:
+    """Cells that do not fit, where others do.
 
     Args:
-        residual: of the fit, shape `(placements, cells)`.
-        moving: mean difference of each cell while the sheet moves, shape `(cells,)`.
+        off: difference of each cell from the light at its place (counts), shape `(cells,)`.
+        most: limit of it.
         usable: cells without another fault, shape `(cells,)`.
     """
-    off = np.sqrt(np.mean(np.where(usable, residual, 0.0) ** 2, axis=0))
-    if moving is not None:
-        off = np.maximum(off, np.where(usable, _MOVING_TIMES * moving, 0.0))
     return [
         Finding(
             "odd",
             f"cell {cell}: differs by {off[cell]:.0f} of 255 from what its place should read; at "
-            f"most {ODD:g}. A bridge to another cell, a part beside its land, or a poor joint",
+            f"most {most:g}. A bridge to another cell, a part beside its land, or a poor joint",
             (int(cell),),
         )
-        for cell in np.flatnonzero(off > ODD)
+        for cell in np.flatnonzero(usable & (off > most))
     ]

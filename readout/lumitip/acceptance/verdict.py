@@ -8,7 +8,7 @@ import numpy as np
 
 from lumitip import arguments
 from lumitip.acceptance.cells import faults_of_cells, level, odd_cells, swap
-from lumitip.acceptance.findings import Finding
+from lumitip.acceptance.findings import ODD, ODD_MOVING, Finding
 from lumitip.acceptance.fingers import faults_of_fingers
 from lumitip.acceptance.fit import Fitted, fit
 from lumitip.acceptance.gauge import Gauge, GaugeError
@@ -32,7 +32,7 @@ class Verdict:
     """The result of `Judge`."""
 
     findings: tuple[Finding, ...]
-    """First those of cells, then the largest; none if the fingers are accepted."""
+    """Those that others may follow from come first; none if the fingers are accepted."""
     deviations: dict[str, float]
     """Of the fingers, see `lumitip.acceptance.response.DEVIATIONS`; empty if too few cells work."""
     sd: dict[str, float]
@@ -103,12 +103,16 @@ class Judge:
         fitted = None
         if usable.sum() >= LEAST_CELLS and not any(f.cells == () for f in findings):
             fitted = self._fit(frames, usable)
-            odd = odd_cells(fitted.residual, places.misfit, usable)
+            odd = odd_cells(np.sqrt(np.mean(fitted.residual**2, axis=0)), ODD, usable)
             # If many cells misfit, it is no fault of cells.
             if 0 < len(odd) <= usable.sum() // 4:
                 findings += odd
-                fitted = self._fit(frames, self._usable(findings))
-            findings += faults_of_fingers(fitted, reference)
+                usable = self._usable(findings)
+                fitted = self._fit(frames, usable)
+            whole = faults_of_fingers(fitted, reference)
+            if not whole and places.misfit is not None:
+                findings += odd_cells(places.misfit, ODD_MOVING, usable)
+            findings = sorted([*findings, *whole], key=_is_consequence)
         elif not findings:
             findings.append(Finding("unexplained", f"{usable.sum()} cells are too few"))
         return Verdict(
@@ -136,6 +140,11 @@ class Judge:
         faulty = {cell for finding in findings for cell in finding.cells}
         usable: Mask = ~np.isin(np.arange(len(self._layout)), list(faulty))
         return usable
+
+
+def _is_consequence(finding: Finding) -> bool:
+    """Whether it may follow from a mask beside its place, which is then named first."""
+    return finding.kind in ("weak", "odd", "unexplained")
 
 
 def _calibrated(light: Values, frames: Frames) -> Floats:

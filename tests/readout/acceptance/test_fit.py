@@ -23,7 +23,7 @@ from lumitip.twin.built import Piece
         ("gap", -0.8, 0.15),
         ("tilt", 2.0, 0.8),
         ("scatter", -0.4, 0.05),
-        ("hole", 0.4, 0.12),
+        ("hole", 0.4, 0.15),
         ("finger_x", 0.3, 0.1),
     ],
 )
