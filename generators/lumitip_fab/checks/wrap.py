@@ -19,8 +19,8 @@ from lumitip_fab.design import Design, Finger, Prop
 from lumitip_fab.design.frames import applied, backing_bed_to_sensor, prop_bed_to_sensor
 from lumitip_fab.errors import OutputError
 
-PROP_FILES = "mould/prop.*"
-READS = ("mould/*_mould.stl", PROP_FILES, "backing/*_backing.stl")
+READS = ("mould/*_mould.stl", "mould/prop.*", "backing/*_backing.stl")
+PROP_FILES = READS[1]
 STRAY = "this design has no prop: delete the file, which another design left"
 SLOT_MM = 0.05
 HEIGHT_MM = 0.02
