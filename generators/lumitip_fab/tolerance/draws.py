@@ -7,7 +7,7 @@ import numpy as np
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Model
-from lumitip.twin.built import Built
+from lumitip.twin.built import Built, turned
 from lumitip_fab.catalogue.tolerances import Tolerances
 from lumitip_fab.tolerance.streams import Stream, generator
 
@@ -83,7 +83,7 @@ def built(layout: Layout, model: Model, draws: Draws, finger: int) -> Built:
     boards = (of["board"] + of["print"]).reshape(2, 2, 1)
     parts = of["placement"].reshape(2, 2, -1)
     masks = [
-        (1.0 + scale) * _turned(cells, turn_deg) + shift[:, None]
+        (1.0 + scale) * turned(cells, turn_deg) + shift[:, None]
         for scale, turn_deg, shift in zip(
             of["mask_scale"], of["mask_turn"], of["mask_shift"].reshape(2, 2), strict=True
         )
@@ -113,8 +113,3 @@ def built(layout: Layout, model: Model, draws: Draws, finger: int) -> Built:
         drift=light["drift"],
         exposure=float(light["exposure"][0]),
     )
-
-
-def _turned(places: Floats, angle_deg: float) -> Floats:
-    cos, sin = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
-    return np.array([[cos, -sin], [sin, cos]]) @ places

@@ -4,6 +4,7 @@
 either end, once with its rails on the receiver and once on the emitter.
 """
 
+import hashlib
 import json
 import math
 from collections.abc import Iterator
@@ -50,6 +51,8 @@ class Gauge:
     gap_mm: float
     """Between the skins of fingers that are closed on it."""
     placements: tuple[Placement, ...]
+    sha256: str
+    """Of the text of its file."""
 
     @classmethod
     def load(cls, path: str | Path) -> "Gauge":
@@ -59,7 +62,7 @@ class Gauge:
             GaugeError: if it is not the file of a gauge; the message names every fault.
         """
         try:
-            text = Path(path).read_text(encoding="utf-8")
+            text = Path(path).read_bytes().decode()
         except (OSError, UnicodeDecodeError) as error:
             raise GaugeError(
                 f"{path}: cannot be read ({error}). `lumitip-fab build` writes it beside "
@@ -84,6 +87,7 @@ class Gauge:
             record["design_hash"],
             float(record["gap_mm"]),
             tuple(_placement(each) for each in record["placements"]),
+            hashlib.sha256(text.encode()).hexdigest(),
         )
 
 

@@ -50,7 +50,8 @@ class Circumstances:
     device_id: str
     date: str
     """Start of the protocol, ISO 8601."""
-    gauge_file: bytes
+    gauge_sha256: str
+    """Of the gauge file."""
     versions: dict[str, str]
     reference: dict[str, float] | None = None
     """Mean deviations of good fingers, if the verdict was made with them."""
@@ -179,7 +180,7 @@ def _record(
         "misfit_counts": _number(judged.misfit),
         "reference": circumstances.reference,
         "calibration": {"empty": _listed(judged.empty), "dark": _listed(judged.dark)},
-        "gauge_sha256": hashlib.sha256(circumstances.gauge_file).hexdigest(),
+        "gauge_sha256": circumstances.gauge_sha256,
         "frames": {
             "file": FRAMES,
             "sha256": hashlib.sha256(packed).hexdigest(),

@@ -10,7 +10,7 @@ from lumitip.acceptance.gauge import Gauge, in_gap
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Model
-from lumitip.twin.built import Built, Light, Rays
+from lumitip.twin.built import Built, Light, Rays, turned
 from lumitip.twin.optics import FULL, values_of_drive
 
 _LEAST_GAP_MM, _LEAST_DEPTH_MM, _LEAST_HOLE_MM = 0.5, 0.05, 0.5
@@ -165,12 +165,6 @@ class Response:
                 exposure=1.0,
             )
         )
-
-
-def turned(places_mm: Floats, angle_deg: float) -> Floats:
-    """Places turned to the left round the origin, shape `(2, n)`."""
-    cos, sin = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
-    return np.asarray(np.array([[cos, -sin], [sin, cos]]) @ places_mm)
 
 
 def named(values: Floats | Sequence[float]) -> dict[str, float]:

@@ -2,11 +2,10 @@
 
 import argparse
 from datetime import datetime
-from pathlib import Path
 
 import numpy as np
 
-from lumitip.acceptance.gauge import Gauge, GaugeError, Placement
+from lumitip.acceptance.gauge import Gauge, Placement
 from lumitip.acceptance.report import Circumstances, mean_deviations, prepare, write
 from lumitip.acceptance.steps import Frames
 from lumitip.acceptance.verdict import Judge, Verdict
@@ -37,8 +36,7 @@ def run(options: argparse.Namespace) -> int:
         LumitipError: if the gauge is not that of the fingertip, there is no keyboard, or the
             report cannot be written.
     """
-    text = _bytes(options.gauge)
-    gauge = Gauge.from_json(text.decode("utf-8", "replace"), str(options.gauge))
+    gauge = Gauge.load(options.gauge)
     began = datetime.now().astimezone().isoformat(timespec="seconds")
     with open_fingertip(options, calibrated=False) as tip:
         layout, device_id = tip.layout, tip.device_id
@@ -50,8 +48,8 @@ def run(options: argparse.Namespace) -> int:
             prepare(options.out)
             frames = _protocol(tip, gauge, judge, options)
             judged = judge(frames, reference)
-            made = Circumstances(device_id, began, text, versions(), reference)
-            written = write(options.out, frames, judged, layout, made)
+            circumstances = Circumstances(device_id, began, gauge.sha256, versions(), reference)
+            written = write(options.out, frames, judged, layout, circumstances)
         except OSError as error:
             raise LumitipError(f"{options.out}: the report cannot be written: {error}") from error
     _print(judged)
@@ -61,16 +59,6 @@ def run(options: argparse.Namespace) -> int:
         blank.measured("dark", frames.sheet).measured("empty", frames.empty).save()
         print("both references of its cells are saved, as `lumitip tare` saves them")
     return 0 if judged.accepted else NOT_ACCEPTED
-
-
-def _bytes(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise GaugeError(
-            f"{path}: cannot be read ({error}). `lumitip-fab build` writes it beside layout.json, "
-            "if the design has a gauge card"
-        ) from None
 
 
 def _protocol(tip: Fingertip, gauge: Gauge, judge: Judge, options: argparse.Namespace) -> Frames:

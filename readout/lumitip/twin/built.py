@@ -205,3 +205,9 @@ class Light:
         taken = np.clip(0.5 - outside / np.float32(PIXEL_MM), 0.0, 1.0) * self._weight
         lost = np.add.reduceat(taken.astype(np.float64), self._begin[:-1])
         return np.asarray(1.0 - lost / self.full)
+
+
+def turned(places_mm: Floats, angle_deg: float) -> Floats:
+    """Places turned to the left round the origin, shape `(2, n)`."""
+    cos, sin = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
+    return np.asarray(np.array([[cos, -sin], [sin, cos]]) @ places_mm)

@@ -145,7 +145,7 @@ def test_an_output_folder_that_is_a_file_is_refused_before_the_first_step(
 
 def test_names_from_outside_are_no_markup(bench: Bench, judge: Judge) -> None:
     judged = judge(bench.frames())
-    made = Circumstances("<b>&", "2026-11-27", b"", {"lumitip": "<i>"})
+    made = Circumstances("<b>&", "2026-11-27", "", {"lumitip": "<i>"})
     record = {
         **{"device_id": "<b>&", "date": made.date, "design_hash": "0", "deviations": {}},
         **{"reference": None, "gauge_sha256": "", "frames": {"sha256": ""}},

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from lumitip.twin.optics import GAP_MM
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.finger.cells import Cells
 from lumitip_fab.derive.finger.outline import BETWEEN
@@ -14,8 +15,6 @@ from lumitip_fab.derive.finger.strength import Body
 from lumitip_fab.design import Box, Finger, GaugeCard, Mould, Printing, Target
 from lumitip_fab.design.gauge_card import NAME
 
-GAP_MM = 3.0
-"""Gap of a grasp that twin and pose estimator assume: `lumitip.twin.optics.GAP_MM`."""
 BLADE_MM = 0.8  # opaque in black, and stiff across the window
 EDGE_DEG = 12.0  # across rows and columns, so that the edge passes cells at many distances
 STRIP_DEG = 102.0
