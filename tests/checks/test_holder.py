@@ -22,6 +22,7 @@ pytestmark = pytest.mark.slow
 
 Damage = Callable[[Body], Body]
 HOLDER = "holder/holder.stl"
+ON_A_COUPLING = ("robotiq_2f85", "robotiq_2f140")
 AXIS_Z, RADIUS = -43.8, 37.8
 
 
@@ -179,13 +180,17 @@ def test_every_check_fails_for_some_damage(outputs: Path) -> None:
 
 
 def test_a_holder_goes_round_a_round_body_alone(design_dir: Path, tmp_path: Path) -> None:
-    """By the gripper's entry, or by the figure that a user gives; the board comes without one."""
+    """By the gripper's entry, or by the figure that a user gives.
+
+    The breakout comes without one; the flange follows the arm side of the 2F grippers alone.
+    """
     folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
     file, made = folder / "presets/mine.toml", {}
     for gripper in load(folder / "presets/published.toml").catalogue.grippers:
         file.write_text(f'extends = "published.toml"\n[coupling]\ngripper = "{gripper}"\n')
         design = derive(load(file))
-        assert [auxiliary.name for auxiliary in design.auxiliary_boards] == ["breakout", "flange"]
+        boards = [auxiliary.name for auxiliary in design.auxiliary_boards]
+        assert boards == ["breakout"] + ["flange"] * (gripper in ON_A_COUPLING)
         made[gripper] = [(holder.body_mm, holder.body_from) for holder in design.holders]
         told = " ".join(f"{row.quantity} {row.reason}" for row in outside(design))
         assert ("fix the board beside it" in told) == (not design.holders)
