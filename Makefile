@@ -66,10 +66,11 @@ bench: $(DEV) ## measure speed and growth; every part runs, then it fails if a g
 	$(BIN)/lumitip bench-tasks --trials 100 --out $(OUT)/bench-tasks || missed="$$missed tasks"; \
 	test -z "$$missed" || { echo "goals missed in:$$missed"; exit 1; }
 
-pictures: outputs $(DOCS) ## draw the README's pictures from OUT
+pictures: outputs $(DOCS) ## draw the pictures of README and docs from OUT
 	$(BIN)/lumitip-fab build design/presets/integrated.toml --out $(OUT)/integrated --quiet
 	$(BIN)/lumitip-fab build design/presets/flex.toml --out $(OUT)/flex --quiet
 	$(BIN)/python docs/pictures.py $(OUT) $(OUT)/integrated $(OUT)/flex
+	$(BIN)/python docs/cable_animation.py
 	$(BIN)/python docs/view_picture.py
 	$(BIN)/python docs/contacts.py
 	$(BIN)/python docs/twin_figures.py

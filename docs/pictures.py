@@ -1,4 +1,4 @@
-"""Draw the README's pictures from the real outputs: `make pictures`, then look at them.
+"""Draw pictures of the documents from the real outputs: `make pictures`, then look at them.
 
 Needs the extra `[docs]` (VTK drawing off screen, PDFium).
 """
@@ -42,7 +42,7 @@ MOULD: Vector = (0.84, 0.76, 0.62)
 
 
 def main(out: Path, integrated: Path, flex: Path) -> None:
-    """Draw everything that the README shows.
+    """Draw parts, masks, boards, wiring and the manual's pages.
 
     Args:
         out: outputs of the design to edit.

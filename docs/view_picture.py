@@ -1,4 +1,4 @@
-"""Draw the README's picture of the live view: a real page of a real server, in Chromium."""
+"""Draw the picture of the live view: a real page of a real server, in Chromium."""
 
 import sys
 import tempfile

@@ -24,7 +24,7 @@ SIZES = {
     "readout": "live view, Bluetooth and serial line; 20 MB to download",
     "dev": "tests, linters and a second opinion on every format; 0.5 GB to download, "
     "1.2 GB in .venv, 2 to 5 minutes",
-    "docs": "VTK for the README's pictures; 0.1 GB to download",
+    "docs": "VTK for the documents' pictures; 0.1 GB to download",
 }
 LARGE_MB = 5
 # What pip says of a wheel differs between its versions and sources; the size is not always there.

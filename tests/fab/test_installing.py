@@ -17,6 +17,8 @@ ROOT = Path(__file__).parents[2]
 ABSENT = SystemLibrary("libNoSuchThing.so.9", "libno9", "no-glvnd", "no")
 MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
 README = (ROOT / "README.md").read_text(encoding="utf-8")
+READING = (ROOT / "docs/reading.md").read_text(encoding="utf-8")
+START = (ROOT / "docs/start.md").read_text(encoding="utf-8")
 
 
 def _script(path: str) -> ModuleType:
@@ -63,6 +65,13 @@ def test_every_library_of_the_kernel_has_a_package_on_every_distribution() -> No
     for library in LIBRARIES:
         for name in (library.debian, library.fedora, library.arch):
             assert name in message
+
+
+def test_the_page_on_the_start_names_the_packages_of_opengl() -> None:
+    """Those that a system without a desktop lacks; libx11 comes with libgl1 on Debian."""
+    gl, x11, *_ = LIBRARIES
+    for name in (gl.soname, gl.debian, gl.fedora, gl.arch, x11.fedora, x11.arch):
+        assert f"`{name}`" in START
 
 
 def test_the_kernel_needs_no_other_library() -> None:
@@ -176,9 +185,9 @@ def test_no_install_line_names_an_index_that_does_not_have_this_package() -> Non
     assert advertised.search("pip install lumitip")
 
 
-def test_the_wheel_that_readme_names_is_of_this_version() -> None:
+def test_the_wheel_that_the_page_on_reading_names_is_of_this_version() -> None:
     version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
-    assert set(re.findall(r"lumitip-([\d.]+)-py3", README)) == {version}
+    assert set(re.findall(r"lumitip-([\d.]+)-py3", READING)) == {version}
 
 
 def test_the_bare_machine_has_what_readme_names_and_runs_its_command(bare: ModuleType) -> None:

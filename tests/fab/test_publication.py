@@ -1,4 +1,4 @@
-"""The README's table of the publication: every row has a command, and each is understood."""
+"""The table of the publication: every row has a command, and each is understood."""
 
 import re
 import shlex
@@ -12,12 +12,11 @@ from lumitip_fab import cli as fab
 from lumitip_fab.config.load import load
 
 ROOT = Path(__file__).parents[2]
-HEADING = "## Against the publication"
+PAGE = ROOT / "docs/publication.md"
 
 
 def _commands() -> list[str]:
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    lines = text.partition(HEADING)[2].partition("\n## ")[0].splitlines()
+    lines = PAGE.read_text(encoding="utf-8").partition("\n## ")[0].splitlines()
     rows = [line.strip("| ").split(" | ") for line in lines if line.startswith("| ")][1:]
     return [" | ".join(row[2:]).strip("`") for row in rows]
 

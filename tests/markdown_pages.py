@@ -1,0 +1,98 @@
+"""Markdown pages as tests read them: links, anchors, code and prose, by a CommonMark parser."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+from markdown_it import MarkdownIt
+from markdown_it.token import Token
+
+ROOT = Path(__file__).parents[1]
+README = ROOT / "README.md"
+DOCS = sorted((ROOT / "docs").glob("*.md"))
+PAGES = [
+    *(ROOT / f"{name}.md" for name in ("README", "CONTRIBUTING", "SECURITY", "CHANGELOG")),
+    ROOT / "outputs/README.md",
+    *sorted((ROOT / "readout").rglob("README.md")),
+    *DOCS,
+]
+_PARSER = MarkdownIt("commonmark").enable("table")
+
+
+@dataclass(frozen=True)
+class Link:
+    """A relative link or picture of a page: file (as written, may be empty) and anchor."""
+
+    file: str
+    anchor: str
+
+
+def links(text: str) -> list[Link]:
+    """Relative links and pictures, in order; addresses on other computers are left out."""
+    found = []
+    for token in _inline(text):
+        address = str(token.attrGet("href") or token.attrGet("src") or "")
+        if address and not re.match(r"[a-z]+:", address):
+            file, _, anchor = address.partition("#")
+            found.append(Link(file, anchor))
+    return found
+
+
+def anchors(text: str) -> set[str]:
+    """Anchors of the headings, as GitHub forms them: a repeated one has its number behind it."""
+    found: set[str] = set()
+    tokens = _PARSER.parse(text)
+    for opening, content in pairwise(tokens):
+        if opening.type != "heading_open":
+            continue
+        plain = "".join(part.content for part in content.children or ())
+        slug = re.sub(r"[^\w\- ]", "", plain.lower()).replace(" ", "-")
+        number = sum(1 for other in found if re.fullmatch(rf"{re.escape(slug)}(-\d+)?", other))
+        found.add(f"{slug}-{number}" if number else slug)
+    return found
+
+
+def broken_links(page: Path, text: str) -> list[str]:
+    """Links of a page whose file or heading does not exist.
+
+    Args:
+        page: where the text stands; links are relative to its folder.
+        text: its Markdown.
+    """
+    broken = []
+    for link in links(text):
+        file = (page.parent / link.file).resolve() if link.file else page
+        if not file.exists():
+            broken.append(f"{link.file}: no such file")
+        elif link.anchor:
+            target = text if file == page else file.read_text("utf-8")
+            if link.anchor not in anchors(target):
+                broken.append(f"{link.file}#{link.anchor}: no such heading")
+    return broken
+
+
+def linked_files(page: Path, text: str) -> set[Path]:
+    """Files that a page links or shows."""
+    return {(page.parent / link.file).resolve() for link in links(text) if link.file}
+
+
+def code_blocks(text: str, language: str) -> list[str]:
+    """Fenced blocks of a language."""
+    return [t.content for t in _PARSER.parse(text) if t.type == "fence" and t.info == language]
+
+
+def sentences(text: str, least: int) -> set[str]:
+    """Sentences of the prose that have at least `least` characters, without line breaks."""
+    prose = []
+    for token in _PARSER.parse(text):
+        if token.type == "inline":
+            prose.append(re.sub(r"\s+", " ", token.content))
+    split = (part for block in prose for part in re.split(r"(?<=[.!?:;])\s", block))
+    return {part.strip() for part in split if len(part.strip()) >= least}
+
+
+def _inline(text: str) -> Iterator[Token]:
+    for token in _PARSER.parse(text):
+        yield from token.children or ()
