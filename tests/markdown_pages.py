@@ -83,6 +83,18 @@ def code_blocks(text: str, language: str) -> list[str]:
     return [t.content for t in _PARSER.parse(text) if t.type == "fence" and t.info == language]
 
 
+def long_lines(text: str, most: int) -> list[int]:
+    """Numbers of the lines that are longer than `most`, but for tables, links and output."""
+    found, fenced = [], ""
+    for number, line in enumerate(text.split("\n"), 1):
+        if line.lstrip().startswith("```"):
+            fenced = "" if fenced else line.strip()
+        free = line.startswith("|") or "](" in line or fenced == "```text"
+        if len(line) > most and not free:
+            found.append(number)
+    return found
+
+
 def sentences(text: str, least: int) -> set[str]:
     """Sentences of the prose that have at least `least` characters, without line breaks."""
     prose = []

@@ -13,11 +13,12 @@ from markdown_pages import (
     anchors,
     broken_links,
     linked_files,
+    long_lines,
     sentences,
 )
 
 MAP = ROOT / "docs/index.md"
-MOST_LINES, LONG_SENTENCE = 120, 70
+MOST_LINES, MOST_CHARACTERS, LONG_SENTENCE = 120, 100, 70
 
 
 def _name(page: Path) -> str:
@@ -78,3 +79,14 @@ def test_no_sentence_stands_on_two_pages() -> None:
     copied = next(iter(sentences(texts["checks.md"], LONG_SENTENCE)))
     texts["view.md"] += f"\n\n{copied}\n"
     assert _repeated(texts) == {copied}
+
+
+@pytest.mark.parametrize("page", [README, *DOCS], ids=_name)
+def test_lines_fit_an_editor(page: Path) -> None:
+    assert long_lines(page.read_text("utf-8"), MOST_CHARACTERS) == []
+
+
+def test_a_long_line_is_found_and_a_table_is_none() -> None:
+    long = "x" * (MOST_CHARACTERS + 1)
+    text = f"{long}\n| {long} |\n[a]({long})\n```text\n{long}\n```\n```sh\n{long}\n```\n"
+    assert long_lines(text, MOST_CHARACTERS) == [1, 8]
