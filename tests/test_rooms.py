@@ -36,12 +36,13 @@ ALLOWED = {
     "checks.readers": "design",
     "checks": "checks.readers design pipeline",
     "explore": "boards catalogue checks config derive design pipeline",
+    "solve": "catalogue config derive design explore pipeline",
     "tolerance": "catalogue config derive design pipeline",
     "diff": "checks checks.readers config design docs parts pipeline scenes",
     "grippers": "catalogue config derive design docs parts scenes",
     "cli": (
         "boards catalogue checks checks.readers config derive design diff docs explore grippers "
-        "parts pipeline tolerance"
+        "parts pipeline solve tolerance"
     ),
     "__init__": "checks cli config derive design parts pipeline",
     "__main__": "cli",

@@ -61,8 +61,8 @@ def test_the_table_of_presets_has_every_preset() -> None:
     found = [name for row in rows for name in re.findall(r"`(\w+\.toml)`", row.split(" | ")[0])]
     presets = sorted((ROOT / "design/presets").glob("*.toml"))
     assert sorted(found) == [preset.name for preset in presets]
-    assert "Nine presets" in TEXT
-    assert len(presets) == 9
+    assert "Ten presets" in TEXT
+    assert len(presets) == 10
 
 
 def test_the_figures_of_poses_are_those_of_the_table() -> None:

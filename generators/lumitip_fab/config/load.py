@@ -1,5 +1,6 @@
 """Read a parameter file with its bases and its catalogue, and report every fault at once."""
 
+import copy
 import difflib
 import os
 import re
@@ -89,9 +90,7 @@ def load(path: Path) -> Input:
     """
     own = read_toml(path, shown_path(path))
     sources, faults = _with_bases(own)
-    merged: dict[str, Any] = {}
-    for source in reversed(sources):
-        merged = _merge(merged, {k: v for k, v in source.table.items() if k != "extends"})
+    merged = _merged(sources)
     faults = faults or _without_base(sources[-1], merged, design_folder(path))
     whole = not faults  # without its bases, what a file leaves out is no fault
     merged, automatic = filled(merged)
@@ -110,6 +109,18 @@ def load(path: Path) -> Input:
     if faults or parameters is None:
         raise InputError(faults)
     return Input(parameters, Catalogue.model_validate(catalogue), sources, automatic)
+
+
+def written(config: Input) -> dict[str, Any]:
+    """All values as the file and its bases wrote them, `"auto"` included."""
+    return copy.deepcopy(_merged(config.sources))
+
+
+def _merged(sources: tuple[Source, ...]) -> dict[str, Any]:
+    merged: dict[str, Any] = {}
+    for source in reversed(sources):
+        merged = _merge(merged, {k: v for k, v in source.table.items() if k != "extends"})
+    return merged
 
 
 def _setting(sources: tuple[Source, ...], field: str) -> Source:

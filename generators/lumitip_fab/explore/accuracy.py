@@ -8,11 +8,14 @@ same faults are drawn for every design. The Cramér–Rao bound is that of right
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lumitip.estimation import PoseEstimator
+from lumitip.estimation.estimator import DIAMETER_MM
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Cable, HalfPlane, Model, Twin
+from lumitip.twin.optics import GAP_MM
 
 KINDS: dict[str, type[HalfPlane | Cable]] = {"edge": HalfPlane, "cable": Cable}
 NOISE = 1.5
@@ -38,6 +41,54 @@ class Sample:
     seed: int = 0
 
 
+@dataclass(frozen=True)
+class Grasp:
+    """A grasp that poses are estimated in; the estimator expects it."""
+
+    gap_mm: float = GAP_MM
+    """From skin to skin."""
+    diameter_mm: float = DIAMETER_MM
+    """Of cables."""
+    gain: float = Model.gain
+    """Photocurrent of the brightest cell, see `Model`; the estimator expects the default."""
+
+
+class Trials:
+    """Estimates of the poses of a sample, on frames of fingertips that differ from the drawing."""
+
+    def __init__(self, layout: Layout, sample: Sample, grasp: Grasp) -> None:
+        """Prepare estimator, poses and fingertips.
+
+        Raises:
+            EstimationError: if no pose can be estimated with these cells.
+        """
+        self._layout, self._sample, self._grasp = layout, sample, grasp
+        self._estimator = PoseEstimator(layout, None, grasp.gap_mm, grasp.diameter_mm)
+        self.poses = _poses(layout, sample)
+        """Offsets (mm) and angles (degrees), shape `(n, 2)`."""
+        straight = Model.from_layout(layout, grasp.gap_mm, gain=grasp.gain)
+        self._noise = NOISE * dimness(Twin(layout, straight))
+        self._twins = [_faulty(layout, sample.seed, n, grasp) for n in range(sample.fingers)]
+
+    def misses(self, kind: str) -> Floats:
+        """Errors of offset (mm) and angle (degrees) of one kind, shape `(n, 2)`."""
+        chance = np.random.default_rng((self._sample.seed, 2))
+        rows = []
+        twins = np.repeat(np.array(self._twins), self._sample.poses)
+        for (offset, angle), twin in zip(self.poses, twins, strict=True):
+            values = twin.values(self._thing(kind, offset, angle))
+            noisy = values + self._noise * chance.standard_normal(len(self._layout))
+            found = self._estimator(np.floor(np.clip(noisy, 0.0, 255.0)), kind)
+            rows.append(_miss(found.offset_mm, found.angle_deg, offset, angle))
+        return np.array(rows)
+
+    def _thing(self, kind: str, offset_mm: float, angle_deg: float) -> HalfPlane | Cable:
+        if kind == "edge":
+            return HalfPlane(offset_mm=offset_mm, angle_deg=angle_deg)
+        diameter_mm = self._grasp.diameter_mm
+        return Cable(offset_mm=offset_mm, angle_deg=angle_deg, diameter_mm=diameter_mm)
+
+
 def accuracy(layout: Layout, sample: Sample) -> dict[str, float]:
     """Rms of offset (mm) and angle (degrees) over edges and cables, share of gross errors, and
     the Cramér–Rao bound of the offset (mm).
@@ -46,33 +97,30 @@ def accuracy(layout: Layout, sample: Sample) -> dict[str, float]:
         layout: the cells, with their optics.
         sample: what is drawn.
     """
-    straight = Twin(layout)
-    estimator = PoseEstimator(layout)
-    poses = _poses(layout, sample)
-    missed, bound = {}, []
-    twins = [_faulty(layout, sample.seed, number) for number in range(sample.fingers)]
-    for kind, shape in KINDS.items():
-        chance = np.random.default_rng((sample.seed, 2))
-        rows = []
-        for (offset, angle), twin in zip(
-            poses, np.repeat(np.array(twins), sample.poses), strict=True
-        ):
-            values = twin.values(shape(offset_mm=offset, angle_deg=angle))
-            noisy = values + NOISE * chance.standard_normal(len(layout))
-            found = estimator(np.floor(np.clip(noisy, 0.0, 255.0)), kind)
-            rows.append(_miss(found.offset_mm, found.angle_deg, offset, angle))
-            bound.append(_bound_mm(straight, shape, offset, angle))
-        missed[kind] = np.array(rows)
+    straight, trials = Twin(layout), Trials(layout, sample, Grasp())
+    missed = {kind: trials.misses(kind) for kind in KINDS}
+    bound = [_bound_mm(straight, shape, *pose) for shape in KINDS.values() for pose in trials.poses]
     both = np.concatenate(list(missed.values()))
-    gross = (both[:, 0] >= MOST_MM) | (both[:, 1] >= MOST_DEG)
     return {
-        "error_mm": _rms(both[:, 0]),
-        "error_deg": _rms(both[:, 1]),
-        "edge_mm": _rms(missed["edge"][:, 0]),
-        "cable_mm": _rms(missed["cable"][:, 0]),
-        "gross_percent": 100.0 * float(gross.mean()),
-        "bound_mm": _rms(np.array(bound)),
+        "error_mm": rms(both[:, 0]),
+        "error_deg": rms(both[:, 1]),
+        "edge_mm": rms(missed["edge"][:, 0]),
+        "cable_mm": rms(missed["cable"][:, 0]),
+        "gross_percent": 100.0 * float(gross(both).mean()),
+        "bound_mm": rms(np.array(bound)),
     }
+
+
+def dimness(twin: Twin) -> Floats:
+    """How much larger the noise of calibrated values is than with the default gain of `Model`,
+    shape `(cells,)`: dim cells are multiplied by more in the calibration."""
+    usual = Twin(twin.layout, twin.model.changed(gain=Model.gain))
+    return usual.empty / twin.empty
+
+
+def gross(misses: Floats) -> NDArray[np.bool_]:
+    """Which errors, shape `(n, 2)`, are gross."""
+    return (misses[:, 0] >= MOST_MM) | (misses[:, 1] >= MOST_DEG)
 
 
 def _poses(layout: Layout, sample: Sample) -> Floats:
@@ -85,17 +133,18 @@ def _poses(layout: Layout, sample: Sample) -> Floats:
     )
 
 
-def _faulty(layout: Layout, seed: int, number: int) -> Twin:
+def _faulty(layout: Layout, seed: int, number: int, grasp: Grasp) -> Twin:
     chance = np.random.default_rng((seed, 1, number))
     optics = layout.optics
     off = chance.uniform(-1.0, 1.0, 4)
-    straight = Model.from_layout(layout)
+    straight = Model.from_layout(layout, grasp.gap_mm, gain=grasp.gain)
     model = Model.from_layout(
         layout,
         gap_mm=straight.gap_mm + _GAP_MM * off[0],
         detector_exponent=max(optics.detector_exponent + _EXPONENT * off[1], 0.0),
         alpha=straight.alpha + _ALPHA * off[2],
         hole_mm=optics.hole_mm * (1.0 + _HOLE * off[3]),
+        gain=grasp.gain,
     )
     gains = 1.0 + GAINS * chance.standard_normal(len(layout))
     return Twin(layout, model, gains=np.maximum(gains, 0.5))
@@ -129,5 +178,6 @@ def _bound_mm(twin: Twin, shape: type[HalfPlane | Cable], offset: float, angle: 
     return float(np.sqrt(spread[0, 0]))
 
 
-def _rms(values: Floats) -> float:
+def rms(values: Floats) -> float:
+    """Root of the mean square."""
     return float(np.sqrt(np.mean(np.square(values))))

@@ -1,19 +1,16 @@
 """A whole study: on all cores of this machine, or on a Dask cluster."""
 
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import as_completed
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from lumitip.errors import how_to_install
-from lumitip.tasks.bench import workers
 from lumitip_fab.catalogue.ordering import Prices
 from lumitip_fab.config.load import Input, load
 from lumitip_fab.config.parts import NAMED, NONE
-from lumitip_fab.errors import BuildError, InputError, OutputError, Problem
+from lumitip_fab.errors import InputError, Problem
 from lumitip_fab.explore.accuracy import Sample
 from lumitip_fab.explore.evaluate import FIGURES, Job, Journal, Record, evaluate, unpriced
+from lumitip_fab.explore.pool import pool
 from lumitip_fab.explore.vary import Axis, Changes, axes, changed, combinations
 from lumitip_fab.pipeline.build import locked
 
@@ -97,10 +94,11 @@ def explore(
         missing = {key: job for key, job in zip(keys, jobs, strict=True) if key not in records}
         known = len(set(keys)) - len(missing)
         progress(known, known + len(missing))
-        for done, record in enumerate(_evaluated(list(missing.values()), scheduler), start=1):
-            journal.add(record)
-            records[record["key"]] = record
-            progress(known + done, known + len(missing))
+        with pool(evaluate, len(missing), scheduler) as evaluated:
+            for done, record in enumerate(evaluated(list(missing.values())), start=1):
+                journal.add(record)
+                records[record["key"]] = record
+                progress(known + done, known + len(missing))
     designs = tuple(_found(job, records[key]) for job, key in zip(jobs, keys, strict=True))
     return Study(asked, designs, prices.currency, len(missing))
 
@@ -126,44 +124,3 @@ def _found(job: Job, record: Record) -> Found:
     figures = {name: evaluated[name] for name in FIGURES} if evaluated else {}
     columns = job.config.parameters.grid.columns
     return Found(job.changes, columns, figures, tuple(record.get("refused", ())))
-
-
-def _evaluated(jobs: list[Job], scheduler: str | None) -> Iterator[Record]:
-    if not jobs:
-        return iter(())
-    return _on_cluster(jobs, scheduler) if scheduler else _here(jobs)
-
-
-def _here(jobs: list[Job]) -> Iterator[Record]:
-    with workers(len(jobs)) as pool:
-        try:
-            for future in as_completed([pool.submit(evaluate, job) for job in jobs]):
-                yield future.result()
-        except BrokenProcessPool as error:
-            raise BuildError(
-                "a worker was stopped from outside; the same command again goes on from here"
-            ) from error
-
-
-def _on_cluster(jobs: list[Job], scheduler: str) -> Iterator[Record]:
-    try:
-        from distributed import Client
-        from distributed import as_completed as as_gathered
-    except ModuleNotFoundError as error:
-        raise OutputError(
-            f"--scheduler {scheduler}: needs Dask: {how_to_install('fab,dask')}"
-        ) from error
-    try:
-        client = Client(scheduler, timeout=10)
-    except (OSError, ValueError) as error:
-        raise OutputError(
-            f"--scheduler {scheduler}: no scheduler answers there ({error}); start one with `dask "
-            "scheduler`, and workers with `dask worker ADDRESS`"
-        ) from error
-    with client:
-        futures = client.map(evaluate, jobs, key=[job.key for job in jobs], retries=2)
-        try:
-            for _, record in as_gathered(futures, with_results=True):
-                yield record
-        finally:
-            client.cancel(futures)

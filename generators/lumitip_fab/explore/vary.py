@@ -60,7 +60,7 @@ def axes(config: Input, texts: Sequence[str], points: int) -> tuple[Axis, ...]:
     for field in sorted({f for f in fields if fields.count(f) > 1}):
         faults.append(_fault(field, "is there twice; write all of its values in one"))
     for axis in read:
-        faults += _not_allowed(config, axis)
+        faults += not_allowed(config, axis)
     designs = math.prod(len(axis.values) for axis in read)
     if not faults and designs > MOST_DESIGNS:
         faults.append(_fault("", f"makes {designs} designs; at most {MOST_DESIGNS} are evaluated"))
@@ -93,6 +93,29 @@ def changed(config: Input, changes: Changes, keep_size: bool = False) -> Input:
         table["grid"]["columns"] = same_size(grid.columns, grid.pitch_mm, table["grid"]["pitch_mm"])
     automatic = config.automatic - {field for field, _ in changes}
     return replace(config, parameters=Parameters.model_validate(table), automatic=automatic)
+
+
+def not_allowed(config: Input, axis: Axis) -> list[Problem]:
+    """A fault for each value of a field that no design may have."""
+    faults = []
+    kind = NAMED.get(axis.field)
+
+    def source(_: str) -> Source:
+        return config.sources[0]
+
+    for value in axis.values:
+        if kind is not None:
+            names = names_for(axis.field, config.catalogue)
+            if value not in names:
+                message = unknown_name(str(value), list(names), f"parts/{kind}.toml")
+                faults.append(_fault(axis.field, message))
+            continue
+        try:
+            changed(config, ((axis.field, value),))
+        except ValidationError as error:
+            found = problems_of(error, Parameters, source)
+            faults += [_fault(axis.field, problem.message) for problem in found]
+    return faults
 
 
 def same_size(columns: Sequence[int], pitch_mm: float, new_mm: float) -> tuple[int, ...]:
@@ -207,29 +230,6 @@ def _scalar(text: str) -> Any:
 
 def _tuple(value: Any) -> Any:
     return tuple(map(_tuple, value)) if isinstance(value, list) else value
-
-
-def _not_allowed(config: Input, axis: Axis) -> list[Problem]:
-    """Values that no design may have."""
-    faults = []
-    kind = NAMED.get(axis.field)
-
-    def source(_: str) -> Source:
-        return config.sources[0]
-
-    for value in axis.values:
-        if kind is not None:
-            names = names_for(axis.field, config.catalogue)
-            if value not in names:
-                message = unknown_name(str(value), list(names), f"parts/{kind}.toml")
-                faults.append(_fault(axis.field, message))
-            continue
-        try:
-            changed(config, ((axis.field, value),))
-        except ValidationError as error:
-            found = problems_of(error, Parameters, source)
-            faults += [_fault(axis.field, problem.message) for problem in found]
-    return faults
 
 
 def _fault(field: str, message: str) -> Problem:

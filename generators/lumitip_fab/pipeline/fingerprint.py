@@ -44,7 +44,7 @@ def code_hash(*parts: str) -> str:
         roots.append(PACKAGE / "mask")
     if "firmware" in parts:
         roots += [Path(lumitip.__file__).parent / "protocol", *firmware_sources()]
-    if "explore" in parts:
+    if {"explore", "solve"} & {*parts}:
         roots += [Path(lumitip.__file__).parent / name for name in ("twin", "estimation")]
     return _hash(f for r in roots for f in (_sources(r) if r.is_dir() else [r]))
 

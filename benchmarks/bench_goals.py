@@ -1,0 +1,104 @@
+"""The design that a search by goals found, against the published sensor, under wrong optics.
+
+Both have the same cells, cost and LED current. The estimator expects each design's drawing; the
+fingertips differ from it. First frames are of the twin with wrong optics, as the search's own
+confirmation has them; then of the second optical model, which the search never saw
+(`second_light`), with holes and depths of each design.
+
+Run by `make bench`; exits 1 if a goal is missed. Arguments: number of poses, number of fingertips
+of the second model.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from common import Goals, on_one_core
+from lumitip.estimation import PoseEstimator
+from lumitip.grid import Floats
+from lumitip.layout import Layout
+from lumitip_fab import derived
+from lumitip_fab.explore.accuracy import Grasp, Sample, Trials, rms
+from poses import estimated, gross, misses
+from second_bench import fingers, trials
+from second_light import Light
+from second_tips import Tips, drawn
+
+POSES, FINGERS, SEED = 120, 6, 900
+LOWER_PERCENT = 30.0
+"""Least reduction of the error, by the issue of the search."""
+PRESETS = Path(__file__).parents[1] / "design" / "presets"
+DESIGNS = {"published": PRESETS / "published.toml", "by goals": PRESETS / "by_goals.toml"}
+KINDS = ("edge", "cable")
+
+
+def of_twin(layout: Layout) -> dict[str, Floats]:
+    """Errors of offset (mm) and angle (degrees) by kind, shape `(n, 2)`."""
+    tried = Trials(layout, Sample(), Grasp())
+    return {kind: tried.misses(kind) for kind in KINDS}
+
+
+def of_second_model(
+    layout: Layout, silicone_mm: float, poses: int, count: int
+) -> dict[str, Floats]:
+    """The same on frames of the second model, tared."""
+    optics = layout.optics
+    tips = Tips(
+        hole_mm=optics.hole_mm,
+        film_mm=optics.film_mm,
+        board_mm=silicone_mm,
+        led_depth_mm=optics.emitter_depth_mm,
+        detector_depth_mm=optics.detector_depth_mm,
+    )
+    found = [
+        Light.of(layout, drawn(np.random.default_rng((2, SEED + n)), tips), SEED + n)
+        for n in range(count)
+    ]
+    method = estimated(PoseEstimator(layout).prepare(*KINDS))
+    pairs = fingers(found, SEED, 0.0)
+    return {kind: misses(method, trials(pairs, kind, poses, SEED), kind) for kind in KINDS}
+
+
+def main(poses: int, count: int) -> int:
+    """Print both tables; the exit code."""
+    goals = Goals()
+    designs = {name: derived(file) for name, file in DESIGNS.items()}
+    for model, errors in (
+        ("the twin, optics wrong", {n: of_twin(d.layout) for n, d in designs.items()}),
+        (
+            f"a model that shares nothing with the twin, {count} fingertips",
+            {
+                n: of_second_model(d.layout, d.stack.silicone_mm, poses, count)
+                for n, d in designs.items()
+            },
+        ),
+    ):
+        print(f"frames of {model}")
+        print(f"  {'':<24}{'rms mm':>8}{'deg':>8}{'gross %':>9}")
+        for name, of in errors.items():
+            for kind, rows in of.items():
+                wild = gross(rows)
+                kept = rows[~wild]
+                print(
+                    f"  {name + ', ' + kind:<24}{rms(kept[:, 0]):>8.3f}{rms(kept[:, 1]):>8.2f}"
+                    f"{100.0 * wild.mean():>9.1f}",
+                    flush=True,
+                )
+        before, after = (
+            rms(np.minimum(np.concatenate(list(errors[name].values()))[:, 0], 2.0))
+            for name in DESIGNS
+        )
+        lower = 100.0 * (1.0 - after / before)
+        goals.at_least(f"{model}: position error lower by", lower, LOWER_PERCENT, "%")
+    one, other = designs.values()
+    goals.at_most("cells", len(other.layout), len(one.layout))
+    current = [sum(design.wiring.current_ma) for design in (one, other)]
+    goals.at_most("LED current", current[1], round(current[0], 3), "mA")
+    return goals.exit_code()
+
+
+if __name__ == "__main__":
+    on_one_core()
+    asked = [int(text) for text in sys.argv[1:3]]
+    sys.exit(main(*(asked + [POSES, FINGERS][len(asked) :])))

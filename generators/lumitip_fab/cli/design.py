@@ -1,0 +1,125 @@
+"""`lumitip-fab design`: search the design that meets goals."""
+
+import argparse
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from lumitip_fab.checks.run import run_checks
+from lumitip_fab.cli.build import build
+from lumitip_fab.cli.screen import ERR, FAILED, OUT
+from lumitip_fab.config.load import Input
+from lumitip_fab.errors import InputError, Problem
+from lumitip_fab.explore.accuracy import Sample
+from lumitip_fab.solve import files
+from lumitip_fab.solve.confirm import EVIDENCE
+from lumitip_fab.solve.goals import read_goals
+from lumitip_fab.solve.judge import excesses
+from lumitip_fab.solve.study import Options, Study, study
+
+_LIMITS = {"designs": (8, 100_000), "points": (1, 50), "seed": (0, 2**32 - 1)}
+
+
+def run(options: argparse.Namespace) -> int:
+    """Search, write the study, and build its points if asked for."""
+    _require_in_range(options)
+    task = read_goals(options.goals)
+    asked = Options(options.designs, options.points, options.seed, Sample(seed=options.seed))
+    columns = (TextColumn("designs"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    silent = options.quiet or options.json
+    with Progress(*columns, console=ERR, disable=silent, transient=True) as bar:
+        shown = bar.add_task("designs", total=None)
+
+        def progress(done: int, total: int) -> None:
+            bar.update(shown, completed=done, total=total)
+
+        found = study(task, options.out, asked, options.scheduler, progress)
+    written = files.write(found, options.out)
+    if options.json:
+        print((options.out / "study.json").read_text(encoding="utf-8"), end="")
+    elif not options.quiet:
+        print_study(found, OUT)
+        OUT.print("wrote " + ", ".join(map(str, written)), soft_wrap=True)
+    failed = not found.search.front
+    for point in found.points[1:] if options.build else ():
+        failed |= _fails(options.out / point.name, silent)
+    return FAILED if failed else 0
+
+
+def _require_in_range(options: argparse.Namespace) -> None:
+    faults = [
+        Problem(f"--{name}", 0, "", f"is {value}; {least} to {most} is allowed")
+        for name, (least, most) in _LIMITS.items()
+        if not least <= (value := getattr(options, name)) <= most
+    ]
+    if faults:
+        raise InputError(faults)
+
+
+def _fails(folder: Path, silent: bool) -> bool:
+    """Build a point and check it; whether a check fails."""
+    build(folder.with_suffix(".toml"), folder)
+    outcome = run_checks(folder)
+    if not silent:
+        failed = ", ".join(sorted({m.check for m in outcome.failed}))
+        result = f"fails {failed}" if failed else f"passes {len(outcome.names)} checks"
+        OUT.print(f"{folder}: built, {result}", soft_wrap=True)
+    return bool(outcome.failed)
+
+
+def print_study(found: Study, console: Console) -> None:
+    """Print the points, and what no design met."""
+    search, targets = found.search, found.task.targets
+    how = "all" if search.complete else f"of {found.task.designs}"
+    table = Table(
+        title=f"{len(search.designs)} designs judged ({how}), {search.evaluated} of them now",
+        caption=f"errors: expected / of the estimator ({EVIDENCE}); rms over all grasps",
+    )
+    fields = [axis.field for axis in found.task.axes]
+    for heading in ("", *fields, "edge mm", "edge °", "cable mm", "cable °", "cost", "LEDs mA"):
+        table.add_column(heading, justify="right")
+    for point in found.points:
+        values, figures = dict(point.judged.changes), point.judged.figures
+        errors = (
+            f"{figures[name]:.3g} / {point.confirmed[name]:.3g}" if name in point.confirmed else ""
+            for name in ("edge_mm", "edge_deg", "cable_mm", "cable_deg")
+        )
+        table.add_row(
+            point.name,
+            *(f"{values.get(field, _of_base(found.task.base, field))}" for field in fields),
+            *errors,
+            f"{figures['cost']:.2f}",
+            f"{figures['current_ma']:.1f}",
+        )
+    console.print(table)
+    console.print(
+        f"goals: edge {targets.edge_mm:g} mm, {targets.edge_deg:g}°; cable {targets.cable_mm:g} mm,"
+        f" {targets.cable_deg:g}°; gaps {_listed(targets.gaps_mm)} mm, "
+        f"cables {_listed(targets.cables_mm)} mm"
+    )
+    if nearest := found.nearest:
+        over = max(excesses(nearest.figures, found.task.limits))
+        console.print(
+            f"No design keeps all limits. The nearest, {dict(nearest.changes)}, is "
+            f"{100 * over:.0f} % beyond one of them. Relax limits, or vary more parameters.",
+            style="bold red",
+        )
+    elif not search.front:
+        reasons = sorted({text for one in search.designs for text in one.refused})[:5]
+        console.print("Every design is refused:", style="bold red")
+        for text in reasons:
+            console.print(f"  {text}", soft_wrap=True)
+    else:
+        first = min(search.front, key=lambda one: one.figures["error"])
+        met = "are met" if first.figures["error"] <= 1.0 else "are not met by any design"
+        console.print(f"The goals {met}, by expected errors.")
+
+
+def _of_base(base: Input, field: str) -> object:
+    return "auto" if field in base.automatic else base.value(field)
+
+
+def _listed(values: tuple[float, ...]) -> str:
+    return ", ".join(f"{value:g}" for value in values)

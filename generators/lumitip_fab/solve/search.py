@@ -1,0 +1,207 @@
+"""The search: all designs if they are few, else NSGA-II over the parameters that may move."""
+
+import itertools
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.stats import qmc
+
+from lumitip.errors import how_to_install
+from lumitip_fab.derive import derive
+from lumitip_fab.errors import BuildError
+from lumitip_fab.explore.evaluate import Journal, Record
+from lumitip_fab.explore.pool import pool
+from lumitip_fab.explore.vary import Changes
+from lumitip_fab.pipeline.build import locked
+from lumitip_fab.solve.goals import Task
+from lumitip_fab.solve.judge import OBJECTIVES, Job, excesses, judge, light
+
+FEWEST, POPULATION = 8, 24
+"""Designs of a generation: of a short search, and of a long one."""
+_REFUSED = 10.0  # excess of a design that is refused
+Progress = Callable[[int, int], object]
+Point = tuple[int, ...]
+"""Number of the value on each axis."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """One design of a search."""
+
+    changes: Changes
+    columns: tuple[int, ...]
+    """Cells of each column of its grid."""
+    figures: dict[str, float]
+    """Empty if it is refused."""
+    refused: tuple[str, ...]
+    excess: float
+    """Sum of the shares by which it is beyond limits."""
+
+    @property
+    def allowed(self) -> bool:
+        """Whether it keeps all limits."""
+        return bool(self.figures) and self.excess <= 0.0
+
+    @property
+    def objectives(self) -> tuple[float, ...]:
+        """Figures to minimise."""
+        return tuple(self.figures[name] for name in OBJECTIVES)
+
+
+@dataclass(frozen=True)
+class Search:
+    """All designs of a search, in the order in which they were asked for."""
+
+    base: Judged
+    designs: tuple[Judged, ...]
+    complete: bool
+    """Whether they are all combinations."""
+    evaluated: int
+    """How many were evaluated now; the others were known."""
+
+    @property
+    def front(self) -> tuple[Judged, ...]:
+        """Allowed designs of which no other is as good in all objectives and better in one, the
+        least error first; of equal designs the first."""
+        allowed = {one.objectives: one for one in reversed(self.designs) if one.allowed}
+        best = [own for own in allowed if not any(_better(other, own) for other in allowed)]
+        return tuple(allowed[own] for own in sorted(best))
+
+
+def search(
+    task: Task, out: Path, designs: int, seed: int, scheduler: str | None, progress: Progress
+) -> Search:
+    """Search designs; what the folder's journal knows is not judged again.
+
+    Args:
+        task: goals, base and parameters.
+        out: folder of the journal.
+        designs: most designs that are judged.
+        seed: of the search.
+        scheduler: address of a Dask scheduler; all cores of this machine by default.
+        progress: called with how many are done, and of how many at most.
+
+    Raises:
+        InputError: if the base is refused.
+        OutputError: if the folder cannot be used.
+        BuildError: if workers fail, or pymoo is not installed.
+    """
+    base_light = light(derive(task.base))
+    with locked(out), Journal(out) as journal, pool(judge, POPULATION, scheduler) as evaluated:
+        judges = _Judges(task, base_light, journal, evaluated)
+        judges.progress = lambda: progress(min(len(judges.designs), most), most)
+        most = min(designs, task.designs)
+        base = judges.judged([()])[0]
+        complete = task.designs <= designs
+        if complete:
+            every = list(itertools.product(*(range(len(axis.values)) for axis in task.axes)))
+            for begin in range(0, len(every), POPULATION):
+                judges(every[begin : begin + POPULATION])
+        else:
+            for _ in _generations(task, designs, seed, judges):
+                if len(judges.designs) >= designs:
+                    break
+    return Search(base, tuple(judges.designs.values()), complete, judges.evaluated)
+
+
+class _Judges:
+    """Judges points of a search, each once."""
+
+    def __init__(
+        self,
+        task: Task,
+        base_light: float,
+        journal: Journal,
+        evaluate: Callable[[Sequence[Job]], Iterator[Record]],
+    ) -> None:
+        self._task, self._base_light = task, base_light
+        self._journal, self._evaluate = journal, evaluate
+        self._records: dict[str, Record] = dict(journal.known)
+        self.designs: dict[Point, Judged] = {}
+        self.evaluated = 0
+        self.progress: Callable[[], object] = lambda: None
+
+    def __call__(self, points: Sequence[Point]) -> list[Judged]:
+        """The designs at points."""
+        new = [point for point in dict.fromkeys(points) if point not in self.designs]
+        found = self.judged([_changes(self._task, point) for point in new])
+        self.designs.update(zip(new, found, strict=True))
+        self.progress()
+        return [self.designs[point] for point in points]
+
+    def judged(self, each: Sequence[Changes]) -> list[Judged]:
+        """Designs by their changes."""
+        jobs = [Job.of(self._task, changes, self._base_light) for changes in each]
+        missing = {job.key: job for job in jobs if job.key not in self._records}
+        for record in self._evaluate(list(missing.values())):
+            self._journal.add(record)
+            self._records[record["key"]] = record
+            self.evaluated += 1
+        return [_judged(self._task, job, self._records[job.key]) for job in jobs]
+
+
+def _changes(task: Task, point: Point) -> Changes:
+    return tuple((axis.field, axis.values[n]) for axis, n in zip(task.axes, point, strict=True))
+
+
+def _judged(task: Task, job: Job, record: Record) -> Judged:
+    figures = record.get("figures", {})
+    excess = sum(max(of, 0.0) for of in excesses(figures, task.limits)) if figures else _REFUSED
+    columns = job.config.parameters.grid.columns
+    return Judged(job.changes, columns, figures, tuple(record.get("refused", ())), excess)
+
+
+def _better(other: tuple[float, ...], own: tuple[float, ...]) -> bool:
+    return other != own and all(o <= m for o, m in zip(other, own, strict=True))
+
+
+def _generations(
+    task: Task, designs: int, seed: int, judges: Callable[[Sequence[Point]], list[Judged]]
+) -> Iterator[None]:
+    """Generations of NSGA-II; the first is spread evenly over the values."""
+    try:
+        from pymoo.core.evaluator import Evaluator
+        from pymoo.core.mixed import MixedVariableGA
+        from pymoo.core.population import Population
+        from pymoo.core.problem import Problem
+        from pymoo.core.variable import Choice, Integer
+        from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
+        from pymoo.problems.static import StaticProblem
+    except ModuleNotFoundError as error:
+        raise BuildError(f"the search needs pymoo: {how_to_install('fab,solve')}") from error
+    sizes = [len(axis.values) for axis in task.axes]
+    ordered = [_is_number(axis.values[0]) for axis in task.axes]
+    names = [str(n) for n in range(len(sizes))]
+    variables = {
+        name: Integer(bounds=(0, n - 1)) if is_ordered else Choice(options=list(range(n)))
+        for name, n, is_ordered in zip(names, sizes, ordered, strict=True)
+    }
+    problem = Problem(vars=variables, n_obj=len(OBJECTIVES), n_ieq_constr=1)
+    size = max(FEWEST, min(POPULATION, designs // 6))
+    even = qmc.LatinHypercube(len(sizes), rng=np.random.default_rng(seed)).random(size)
+    first = [{n: int(v) for n, v in zip(names, row * sizes, strict=True)} for row in even]
+    algorithm = MixedVariableGA(
+        pop_size=size,
+        sampling=Population.new(X=np.array(first, dtype=object)),
+        survival=RankAndCrowding(),
+    )
+    generations = 50 * (1 + designs // size)  # ends by the number of designs
+    algorithm.setup(problem, termination=("n_gen", generations), seed=seed, verbose=False)
+    while algorithm.has_next():
+        asked = algorithm.ask()
+        if asked is None or not len(asked):
+            return
+        found = judges([tuple(int(of[n]) for n in names) for of in asked.get("X")])
+        worst = [1e6] * len(OBJECTIVES)
+        values = np.array([one.objectives if one.figures else worst for one in found])
+        beyond = np.array([[one.excess] for one in found])
+        Evaluator().eval(StaticProblem(problem, F=values, G=beyond), asked)
+        algorithm.tell(infills=asked)
+        yield
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
