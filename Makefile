@@ -31,9 +31,10 @@ $(DEV): $(FAB)
 $(DOCS): $(FAB)
 	@$(PYTHON) generators/setup_venv.py docs && touch $@
 
-outputs: $(FAB) ## build DESIGN into OUT, then check it; ends in a summary
+outputs: $(FAB) ## build DESIGN into OUT, check it, and write its page
 	@$(BIN)/lumitip-fab build $(DESIGN) --out $(OUT)
-	@$(CHECK) --memory $(OUT)/.checked.json
+	@$(CHECK) --memory $(OUT)/.checked.json; checked=$$?; \
+	$(BIN)/lumitip-fab page --out $(OUT) && exit $$checked
 
 check: $(FAB) ## re-read every file in OUT and prove that they fit
 	$(CHECK)

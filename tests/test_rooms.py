@@ -39,10 +39,11 @@ ALLOWED = {
     "solve": "catalogue config derive design explore pipeline",
     "tolerance": "catalogue config derive design pipeline",
     "diff": "checks checks.readers config design docs parts pipeline scenes",
+    "site": "checks checks.readers design pipeline",
     "grippers": "catalogue config derive design docs parts scenes",
     "cli": (
         "boards catalogue checks checks.readers config derive design diff docs explore grippers "
-        "parts pipeline solve tolerance"
+        "parts pipeline site solve tolerance"
     ),
     "__init__": "checks cli config derive design parts pipeline",
     "__main__": "cli",

@@ -9,14 +9,15 @@ from lumitip_fab.checks.run import MODULES, Memory, as_json, run_checks
 from lumitip_fab.cli import report, summary
 from lumitip_fab.cli.screen import ERR, FAILED, OUT
 from lumitip_fab.errors import OutputError
-from lumitip_fab.pipeline.manifest import write_file
+from lumitip_fab.pipeline.manifest import PAGE, write_file
 
 
 def run(options: argparse.Namespace) -> int:
     """Check, and write the reports."""
     with ERR.status("reading the files back") if not options.quiet else nullcontext():
         reports = [path for path in (options.junit, options.report) if path]
-        memory = Memory(options.memory, options.out, reports) if options.memory else None
+        beside = [*reports, options.out / PAGE]
+        memory = Memory(options.memory, options.out, beside) if options.memory else None
         outcome = run_checks(options.out, MODULES, memory, os.cpu_count() or 1)
     text = json.dumps(as_json(outcome), indent=1) + "\n"
     for path, data in ((options.junit, report.junit(outcome)), (options.report, text.encode())):

@@ -11,7 +11,8 @@ from typing import Any
 
 from lumitip_fab.checks.result import Measurement, relative_margin
 from lumitip_fab.checks.run import MODULES, Memory, Outcome, run_checks
-from lumitip_fab.diff.folder import REPORTS, Folder
+from lumitip_fab.diff.folder import Folder
+from lumitip_fab.pipeline.manifest import REPORTS
 
 MEMORY = ".checked.json"
 """Results that `make outputs` keeps in the output folder."""

@@ -15,13 +15,11 @@ from lumitip_fab.design.encoding import read_design
 from lumitip_fab.design.frames import Matrix
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline import manifest
-from lumitip_fab.pipeline.manifest import Manifest
+from lumitip_fab.pipeline.manifest import REPORTS, Manifest
 
 PARAMETERS, BILL, ORDER, CABLES = "resolved.toml", "bom.csv", "order.csv", "wiring/cables.csv"
 _NEEDED = ("design.json", PARAMETERS, BILL, ORDER, CABLES)
 _ROBOT = "robot/"
-REPORTS = ("checks.json", "checks.xml")
-"""Files that `make outputs` writes beside those of the build."""
 
 
 @dataclass(frozen=True, eq=False)

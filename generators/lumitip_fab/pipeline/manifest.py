@@ -13,6 +13,9 @@ from lumitip_fab.pipeline.dependencies import Dependencies
 
 NAME = "manifest.json"
 SCHEMA_VERSION = 3
+PAGE = "index.html"
+REPORTS = ("checks.json", "checks.xml", PAGE)
+"""Files that `make outputs` writes beside those of the build."""
 
 
 @dataclass(frozen=True)

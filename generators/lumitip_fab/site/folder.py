@@ -1,0 +1,124 @@
+"""The files of an output folder that the page shows."""
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from lumitip_fab.checks.readers.kicad_board import KicadBoard, read_board
+from lumitip_fab.checks.readers.tables import table
+from lumitip_fab.checks.result import Measurement
+from lumitip_fab.design import Design
+from lumitip_fab.design.encoding import read_design
+from lumitip_fab.errors import OutputError
+from lumitip_fab.pipeline import manifest
+from lumitip_fab.pipeline.manifest import Manifest
+
+CHECKS, BILL, ORDER, CABLES = "checks.json", "bom.csv", "order.csv", "wiring/cables.csv"
+_BOUNDS = {"measured": math.nan, "low": -math.inf, "high": math.inf}
+"""What a figure is that the report has no number for."""
+
+
+@dataclass(frozen=True)
+class Folder:
+    """An output folder."""
+
+    out: Path
+    design: Design
+    manifest: Manifest
+
+    @classmethod
+    def of(cls, out: Path) -> "Folder":
+        """The folder at a path.
+
+        Raises:
+            OutputError: if it is no output folder, or is incomplete.
+        """
+        recorded = manifest.read(out)
+        if not recorded.files:
+            raise OutputError(
+                f"--out: is {out}, which has no usable {manifest.NAME}; an output folder of this "
+                "version is needed. Run lumitip-fab build."
+            )
+        missing = sorted(path for path in recorded.files if not (out / path).is_file())
+        if missing:
+            raise OutputError(
+                f"--out: is {out}, where {len(missing)} of {len(recorded.files)} files are "
+                f"missing, such as {missing[0]}; all are needed. Run lumitip-fab build."
+            )
+        return cls(out, read_design(out / "design.json"), recorded)
+
+    def text(self, path: str) -> str:
+        """The text of a file.
+
+        Raises:
+            OutputError: if it cannot be read.
+        """
+        try:
+            return (self.out / path).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise self.damaged(path, error) from error
+
+    def rows(self, path: str) -> list[dict[str, str]]:
+        """The rows of a table.
+
+        Raises:
+            OutputError: if it is no table.
+        """
+        try:
+            return table(self.text(path))
+        except ValueError as error:
+            raise self.damaged(path, error) from error
+
+    def facts(self, path: str) -> Mapping[str, Any]:
+        """Figures of a file, from the manifest."""
+        return self.manifest.files[path].facts
+
+    def board(self, name: str) -> KicadBoard:
+        """A board by its name.
+
+        Raises:
+            OutputError: if it cannot be read.
+        """
+        return read_board(self.out / board_path(name))
+
+    @cached_property
+    def measurements(self) -> tuple[Measurement, ...]:
+        """What the checks measured; empty where they have not run.
+
+        Raises:
+            OutputError: if the report cannot be read.
+        """
+        if not (self.out / CHECKS).is_file():
+            return ()
+        try:
+            return tuple(map(_measurement, json.loads(self.text(CHECKS))))
+        except (ValueError, TypeError, KeyError, AttributeError) as error:
+            raise OutputError(
+                f"{self.out / CHECKS}: cannot be read ({error!s:.200}); a report of lumitip-fab "
+                "check is needed. Run make check."
+            ) from error
+
+    def damaged(self, path: str, reason: object) -> OutputError:
+        """The error for a file that cannot be shown."""
+        return OutputError(
+            f"{self.out / path}: cannot be read ({reason!s:.200}); a file as lumitip-fab build "
+            "writes it is needed. Build the design again."
+        )
+
+
+def board_path(name: str) -> str:
+    """The KiCad file of a board."""
+    return f"boards/{name}/{name}.kicad_pcb"
+
+
+def _measurement(entry: dict[str, Any]) -> Measurement:
+    figures: dict[str, Any] = {
+        name: unknown if entry[name] is None else entry[name] for name, unknown in _BOUNDS.items()
+    }
+    return Measurement(
+        entry["check"], entry["subject"], **figures, unit=entry["unit"], note=entry["note"]
+    )

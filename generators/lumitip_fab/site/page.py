@@ -1,0 +1,202 @@
+"""The page about an output folder: one HTML file that needs nothing else."""
+
+import json
+from collections.abc import Sequence
+from html import escape
+from string import Template
+from typing import Any
+
+import numpy as np
+
+from lumitip_fab.site.boards import Followed, board_svg
+from lumitip_fab.site.cells import CellRecord, cell_records
+from lumitip_fab.site.checks import check_rows, figure
+from lumitip_fab.site.folder import Folder
+from lumitip_fab.site.masks import grid_svg, mask_svg
+from lumitip_fab.site.tables import (
+    Figure,
+    Print,
+    bill_table,
+    duration,
+    figure_table,
+    file_lists,
+    order_table,
+    print_table,
+    prints,
+    totals,
+)
+from lumitip_fab.site.targets import Targets
+from lumitip_fab.text import data_file
+
+SCRIPTS = ("follow.js", "tables.js", "start.js")
+WIRING = "wiring/wiring.svg"
+
+
+def page(folder: Folder, figures: Sequence[Figure]) -> str:
+    """The whole page; the same files give the same bytes.
+
+    Args:
+        folder: the output folder.
+        figures: of the design, beside the published ones.
+
+    Raises:
+        OutputError: if a file cannot be read.
+    """
+    design, targets = folder.design, Targets(folder)
+    layout, records = design.layout, cell_records(folder)
+    checks, parts = check_rows(folder, targets), prints(folder)
+    used, packs, stated = totals(folder)
+    middle = int(np.hypot(layout.x_mm, layout.y_mm).argmin())
+    data = {"cells": [r.data() for r in records], "checks": checks, "middle": middle}
+    values = {
+        "title": f"{escape(design.title.name)} {escape(design.title.revision)}",
+        "hash": layout.design_hash[:12],
+        "lead": escape(_lead(folder)),
+        "answers": "".join(_answers(folder, checks, parts)),
+        "cells": len(layout),
+        "last": len(layout) - 1,
+        "grid": grid_svg(layout.x_mm.tolist(), layout.y_mm.tolist(), layout.pitch_mm),
+        "inputs": _inputs(records, folder),
+        "wiring": _wiring(folder.text(WIRING)),
+        "auxiliary": "".join(_auxiliary(folder)),
+        "orders": order_table(folder, targets),
+        "prints": print_table(parts, targets),
+        "bill": bill_table(folder, targets),
+        "sums": f"{used:.2f} used by one pair of fingers, {packs:.2f} with whole packs",
+        "prices": escape(stated),
+        "figures": figure_table(figures),
+        "files": "".join(file_lists(folder)),
+        "style": data_file("site/page.css"),
+        "script": "\n".join(data_file(f"site/{name}") for name in SCRIPTS),
+        "data": _json(data),
+    }
+    values |= {f.name: _finger(folder, f.name, records) for f in design.fingers}
+    values |= {f"{f.name}_mask": mask_svg(folder, f) for f in design.fingers}
+    return Template(data_file("site/page.html")).substitute(values)
+
+
+def _json(data: Any) -> str:
+    """JSON that may stand in a script element."""
+    text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return text.replace("</", "<\\/").replace("<!--", "<\\u0021--")
+
+
+def _lead(folder: Folder) -> str:
+    design = folder.design
+    return (
+        f"Two gripper fingers that see by infrared light: {len(design.layout)} LEDs in one face, "
+        f"as many photodetectors in the other, {design.layout.pitch_mm:g} mm apart. "
+        f"For {design.mount.title}, read by {design.controller.title}."
+    )
+
+
+def _answers(folder: Folder, checks: Sequence[dict[str, Any]], parts: Sequence[Print]) -> list[str]:
+    """What a maker asks first."""
+    design, (used, packs, stated) = folder.design, totals(folder)
+    currency = stated.partition(",")[0]
+    minutes = sum(part.minutes * part.number for part in parts)
+    wait_h = design.mould.glue_hard_h + 2 * design.mould.cure_h
+    return [
+        _answer(
+            "What does it cost?",
+            f"{used:.0f} {currency}",
+            f'{packs:.0f} {currency} with whole packs. <a href="#bill">Bill</a>',
+        ),
+        _answer(
+            "How long does it take?",
+            f"{duration(minutes).partition(' h')[0]} h of printing",
+            f"then {wait_h:g} h of waiting: glue {design.mould.glue_hard_h:g} h, silicone "
+            f"{design.mould.cure_h:g} h for a trial and {design.mould.cure_h:g} h for the skin. "
+            '<a href="#prints">Parts</a>',
+        ),
+        _quality(checks, design.strength.rated_force_n),
+        _answer(
+            "What is first?",
+            "Order the boards",
+            '<a href="#boards">Order files</a>. Meanwhile print '
+            f"{_first(folder)}, then follow the "
+            '<a href="manual/manual.html">build manual</a>.',
+        ),
+    ]
+
+
+def _first(folder: Folder) -> str:
+    file = "fit/fit_plate.stl"
+    if file in folder.manifest.files:
+        return f'the <a href="{file}">fit test plate</a>'
+    return '<a href="#prints">the parts</a>'
+
+
+def _quality(checks: Sequence[dict[str, Any]], rated_n: float) -> str:
+    names = {entry["check"] for entry in checks}
+    failed = {entry["check"] for entry in checks if not entry["passed"]}
+    more = f'Rated for {figure(rated_n)} N at each tip. <a href="#checks">Checks</a>'
+    if not checks:
+        return _answer("How good is it?", "Not checked", f"Run make check. {more}")
+    if failed:
+        return _answer("How good is it?", f"{len(failed)} of {len(names)} checks fail", more, "bad")
+    measured = f"{len(checks)} measurements of the files are within their limits. {more}"
+    return _answer("How good is it?", f"{len(names)} checks pass", measured, "good")
+
+
+def _answer(question: str, answer: str, more: str, kind: str = "") -> str:
+    return (
+        f'<div class="answer {kind}"><h2>{escape(question)}</h2>'
+        f'<p class="big">{escape(answer)}</p><p>{more}</p></div>'
+    )
+
+
+def _finger(folder: Folder, name: str, records: Sequence[CellRecord]) -> str:
+    """The board of a finger, with the parts and nets of its cells."""
+    roles = {"emitter": "led", "receiver": "detector"}
+    parts = {record.parts[roles[name]].partition(".")[2]: record.index for record in records}
+    nets = {
+        net.partition(":")[2]: record.index
+        for record in records
+        for net in record.nets[:1]
+        if net.startswith(f"{name}:")
+    }
+    label = f"{name.capitalize()} board seen from its front, tip up"
+    return board_svg(name, folder.board(name), label, Followed(parts, nets))
+
+
+def _auxiliary(folder: Folder) -> list[str]:
+    return [
+        f'<figure class="panel" id="board-{a.name}"><figcaption><h3>{a.name.capitalize()}</h3>'
+        f'<p class="soft">{escape(a.title)}, from the front</p></figcaption>'
+        + board_svg(a.name, folder.board(a.name), f"{a.title} from its front", Followed({}, {}))
+        + "</figure>"
+        for a in folder.design.auxiliary_boards
+    ]
+
+
+def _inputs(records: Sequence[CellRecord], folder: Folder) -> str:
+    """The inputs of all multiplexers as a table of cells."""
+    layout = folder.design.layout
+    at = {(int(layout.mux[r.index]), int(layout.channel[r.index])): r.index for r in records}
+    channels = len(folder.design.packages.multiplexer.inputs)
+    head = "".join(f'<th scope="col">{channel}</th>' for channel in range(channels))
+    rows = []
+    for mux in range(folder.design.wiring.muxes):
+        cells = "".join(
+            f'<td><button type="button" class="input cell" data-cell="{at[mux, channel]}" '
+            f'aria-label="Cell {at[mux, channel]}: channel {channel} of U{mux + 1}">'
+            f"{at[mux, channel]}</button></td>"
+            if (mux, channel) in at
+            else "<td></td>"
+            for channel in range(channels)
+        )
+        rows.append(f'<tr><th scope="row">U{mux + 1}</th>{cells}</tr>')
+    return (
+        f'<table class="inputs"><thead><tr><th scope="col">channel</th>{head}</tr></thead>'
+        f"<tbody>{''.join(rows)}</tbody></table>"
+    )
+
+
+def _wiring(svg: str) -> str:
+    """The diagram of the cables, its wires by their numbers, without a size of its own."""
+    start = svg.index("<svg")
+    head, _, body = svg[start:].partition(">")
+    box = head.partition('viewBox="')[2].partition('"')[0]
+    body = body.replace(' id="', ' data-wire="')
+    return f'<svg class="wiring" viewBox="{box}" role="img" aria-label="Wiring">{body}'

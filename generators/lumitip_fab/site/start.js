@@ -1,0 +1,3 @@
+
+// The end: all panels are there.
+if (!fromHash()) choose(data.middle, false);

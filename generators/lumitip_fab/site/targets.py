@@ -1,0 +1,89 @@
+"""Where a line of a table is shown: names of bodies, parts, boards, masks and wires of the page.
+
+A body of the 3D view and a part of a board have the same name, such as `emitter.D18`.
+"""
+
+import re
+from collections.abc import Iterator
+
+from lumitip_fab.site.folder import Folder, board_path
+
+_REFERENCE = re.compile(r"\b[A-Z]{1,3}\d+\b")
+_NODE = re.compile(r"\b(?:emitter|receiver|flange|holder|gripper|coupling|robot)\.[A-Za-z]\w*")
+_FINGER = re.compile(r"\b(emitter|receiver)\b")
+_BODIES = {"backing": "backing", "mould": "silicone", "strength": "backing"}
+_OF_BREAKOUT = "holder.board"
+"""The breakout lies in the holder."""
+
+
+class Targets:
+    """Names of what an output folder has."""
+
+    def __init__(self, folder: Folder) -> None:
+        design = folder.design
+        self.fingers = [finger.name for finger in design.fingers]
+        auxiliary = [board.name for board in design.auxiliary_boards]
+        self.boards = [*self.fingers, *auxiliary]
+        self.references = {
+            board: {part.ref for part in folder.board(board).parts} for board in self.boards
+        }
+        self._parts = {
+            board: folder.facts(board_path(board)).get("parts", ()) for board in self.boards
+        }
+
+    def of_file(self, path: str) -> Iterator[str]:
+        """What a file makes."""
+        folder, _, name = path.partition("/")
+        fingers = _FINGER.findall(name.replace("_", " ")) or self.fingers
+        if folder in ("backing", "mould"):
+            yield from (f"{finger}.{_BODIES[folder]}" for finger in fingers)
+        elif folder == "mask":
+            yield from (f"mask.{finger}" for finger in fingers)
+            yield from (f"{finger}.film" for finger in fingers)
+        elif folder == "flange":
+            halves = [half for half in ("lower", "upper") if half in name]
+            yield from (f"flange.{half}" for half in halves or ("lower", "upper"))
+        elif folder == "holder":
+            yield "holder.tray"
+        elif folder == "boards":
+            yield from self.of_board(name.partition("/")[0])
+        elif folder == "wiring":
+            yield "wires"
+        elif path in ("layout.json", "firmware/layout.h"):
+            yield "grid"
+
+    def of_board(self, name: str) -> Iterator[str]:
+        """A bare board."""
+        if name in self.boards:
+            yield f"board.{name}"
+            yield _OF_BREAKOUT if name == "breakout" else f"{name}.board"
+
+    def of_measurement(self, subject: str, note: str) -> list[str]:
+        """What a check measured: parts and bodies that it names, and what its file makes."""
+        file = re.split(r"[:\s]", subject, maxsplit=1)[0]
+        rest = f"{subject[len(file) :]} {note}"
+        found = _NODE.findall(f"{rest} ")
+        board = file.split("/")[1] if file.startswith("boards/") and file.count("/") > 1 else ""
+        known = self.references.get(board, set())
+        found += [f"{board}.{ref}" for ref in _REFERENCE.findall(rest) if ref in known]
+        return list(dict.fromkeys([*found, *self.of_file(file)]))
+
+    def of_line(self, group: str, item: str, part: str) -> list[str]:
+        """What a line of the bill buys."""
+        if group == "electronics":
+            return [
+                f"{board}.{ref}"
+                for board, parts in self._parts.items()
+                for entry in parts
+                if entry["part"] == part
+                for ref in entry["refs"].split(",")
+            ]
+        if group == "boards":
+            return list(self.of_board(item.removesuffix(" board")))
+        if group == "prints":
+            return list(self.of_file(item))
+        if group == "casting":
+            return [f"{finger}.silicone" for finger in self.fingers]
+        if group == "mask":
+            return [t for f in self.fingers for t in (f"mask.{f}", f"{f}.film")]
+        return ["wires"] if group == "wiring" else []

@@ -1,0 +1,70 @@
+"""The page of the published design, and browsers that show it without a network."""
+
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from lumitip_fab.cli import main
+from programs import program
+
+Opened = Callable[..., Page]
+
+
+def write_page(out: Path) -> None:
+    """Check an output folder and write its page, as `make outputs` does."""
+    assert main(["check", "--quiet", "--out", str(out), "--report", str(out / "checks.json")]) == 0
+    assert main(["page", "--quiet", "--out", str(out)]) == 0
+
+
+@pytest.fixture(scope="session")
+def site(once: Callable[..., Path], outputs: Path) -> Path:
+    """The published design's output folder with its page. Do not change it."""
+
+    def fill(folder: Path) -> None:
+        shutil.copytree(outputs, folder, dirs_exist_ok=True)
+        write_page(folder)
+
+    return once("site", fill)
+
+
+@pytest.fixture
+def edited(site: Path, tmp_path: Path) -> Path:
+    """A copy of that folder, to change."""
+    return Path(shutil.copytree(site, tmp_path / "edited"))
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(
+            executable_path=program("chromium"),
+            args=["--no-sandbox", "--use-gl=swiftshader", "--ignore-gpu-blocklist"],
+        )
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def opened(browser: Browser, site: Path) -> Iterator[Opened]:
+    """`opened("#cell-17", folder, color_scheme="dark")`: the page in a browser. At the end nothing
+    may have been written to the console, and nothing asked for but the page."""
+    contexts, said, asked = [], [], []
+
+    def open_page(place: str = "", folder: Path = site, **options: object) -> Page:
+        context = browser.new_context(offline=True, reduced_motion="reduce", **options)  # type: ignore[arg-type]
+        contexts.append(context)
+        tab = context.new_page()
+        tab.on("console", lambda message: said.append(message.text))
+        tab.on("pageerror", lambda error: said.append(str(error)))
+        tab.on("request", lambda request: asked.append(request.url))
+        tab.goto((folder / "index.html").as_uri() + place)
+        return tab
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert said == []
+    assert len([url for url in asked if not url.startswith(("data:", "blob:"))]) == len(contexts)

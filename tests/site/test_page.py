@@ -1,0 +1,161 @@
+"""The tables of the page, and what everyone needs who reads it."""
+
+import csv
+import importlib.util
+import json
+import re
+from html import unescape
+from pathlib import Path
+from urllib.parse import unquote
+
+import pytest
+
+from lumitip_fab.checks.manifest import measure
+from lumitip_fab.cli import main
+from lumitip_fab.design.encoding import read_design
+from lumitip_fab.diff.folder import read_folder
+
+pytestmark = pytest.mark.slow
+
+MOST_BYTES = 8_000_000
+SIZES = {"phone": {"width": 390, "height": 844}, "desk": {"width": 1440, "height": 900}}
+
+
+def axe() -> str:
+    """The script of axe-core."""
+    spec = importlib.util.find_spec("axe_playwright_python")
+    assert spec is not None and spec.origin is not None, "pip install axe-playwright-python"
+    return (Path(spec.origin).parent / "axe.min.js").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_everyone_can_read_it(opened, size: str, scheme: str) -> None:  # type: ignore[no-untyped-def]
+    tab = opened("#cell-17", viewport=SIZES[size], color_scheme=scheme)
+    assert tab.evaluate("document.documentElement.scrollWidth") <= SIZES[size]["width"]
+    tab.evaluate(axe())
+    found = tab.evaluate("axe.run()")
+    assert [(v["id"], v["nodes"][0]["target"]) for v in found["violations"]] == []
+    assert len(found["passes"]) > 20
+
+
+def test_it_is_one_small_file(site: Path) -> None:
+    page = site / "index.html"
+    assert 500_000 < page.stat().st_size < MOST_BYTES
+    text = page.read_text(encoding="utf-8")
+    assert not re.findall(r"\b(?:src|srcset)=|@import|url\((?!#)|type=.?module|\bfetch\(", text)
+
+
+def test_every_link_leads_to_a_file(site: Path) -> None:
+    text = (site / "index.html").read_text(encoding="utf-8")
+    links = {unquote(unescape(link)) for link in re.findall(r'<a [^>]*href="([^"]+)"', text)}
+    files = {link for link in links if not link.startswith("#")}
+    assert len(files) > 200
+    assert [link for link in files if not (site / link).is_file()] == []
+    ids = set(re.findall(r'\bid="([^"]+)"', text))
+    assert {link[1:] for link in links if link.startswith("#")} <= ids
+
+
+def test_every_check_has_its_value_limit_and_margin(opened, site: Path) -> None:  # type: ignore[no-untyped-def]
+    report = json.loads((site / "checks.json").read_text(encoding="utf-8"))
+    tab = opened()
+    tab.locator("#more").click()
+    while tab.locator("#more").is_visible():
+        tab.locator("#more").click()
+    rows = tab.evaluate(
+        """[...document.querySelectorAll("#check-table tbody tr")].map(
+        r => [...r.cells].map(c => c.textContent))"""
+    )
+    assert len(rows) == len(report)
+    assert {(row[0], row[1]) for row in rows} == {(e["check"], e["subject"]) for e in report}
+    wall = next(r for r in rows if r[:2] == ["holder.grip", "holder/holder.stl"])
+    entry = next(e for e in report if e["check"] == "holder.grip")
+    assert wall[2] == f"{entry['measured']:.4g} mm"
+    assert wall[3] == f"≥ {entry['low']:g}"
+    assert wall[4] == f"{entry['margin']:.4g} mm"
+    shares = [float(row[5].removesuffix(" %")) for row in rows if row[5]]
+    assert shares == sorted(shares)
+
+
+def test_checks_are_filtered_and_sorted(opened) -> None:  # type: ignore[no-untyped-def]
+    tab = opened()
+    tab.locator("#query").fill("HOLDER.grip stl")
+    names = tab.locator("#check-table tbody td:first-child").all_text_contents()
+    assert names == ["holder.grip"]
+    tab.locator("#query").fill("mould.thickness")
+    assert tab.locator("#check-table tbody tr").count() == 2
+    tab.locator("#query").fill("")
+    tab.locator("#kind").select_option("failed")
+    assert tab.locator("#check-table tbody tr").count() == 0
+    tab.locator("#kind").select_option("all")
+    tab.locator("#check-table thead button").first.click()
+    tab.locator("#check-table thead button").first.click()
+    names = tab.locator("#check-table tbody td:first-child").all_text_contents()
+    assert names == sorted(names, reverse=True)
+    assert tab.locator("#check-table th").first.get_attribute("aria-sort") == "descending"
+
+
+def test_a_failed_check_is_first(edited: Path, opened) -> None:  # type: ignore[no-untyped-def]
+    report = json.loads((edited / "checks.json").read_text(encoding="utf-8"))
+    entry = next(e for e in report if e["check"] == "holder.grip")
+    entry |= {"measured": 0.1, "margin": -0.15, "passed": False}
+    (edited / "checks.json").write_text(json.dumps(report), encoding="utf-8")
+    assert main(["page", "--quiet", "--out", str(edited)]) == 0
+    tab = opened("", edited)
+    assert "1 of " in str(tab.locator(".answer.bad .big").text_content())
+    first = tab.locator("#check-table tbody td").first.text_content()
+    assert first == "holder.grip fails"
+
+
+def test_a_row_shows_its_parts_and_goes_back(opened) -> None:  # type: ignore[no-untyped-def]
+    tab = opened()
+    button = tab.get_by_role("button", name="Show circuit 74HC4051PW")
+    button.click()
+    lit = tab.evaluate("[...document.querySelectorAll('.part.lit')].map(e => e.dataset.part)")
+    assert lit == ["receiver.U1", "receiver.U2", "receiver.U3", "receiver.U4"]
+    assert tab.locator("#shown").is_visible()
+    tab.keyboard.press("Escape")
+    assert tab.locator(".lit").count() == 0
+    assert tab.evaluate("document.activeElement.textContent") == "show"
+    assert not tab.locator("#shown").is_visible()
+
+
+def test_every_line_of_the_bill_and_every_print_is_there(opened, site: Path) -> None:  # type: ignore[no-untyped-def]
+    tab = opened()
+    with (site / "bom.csv").open(encoding="utf-8", newline="") as file:
+        bill = list(csv.DictReader(file))
+    rows = tab.evaluate(
+        "[...document.querySelectorAll('#bill tbody tr')].map(r => [...r.cells].map(c => "
+        "c.textContent))"
+    )
+    assert [(r[0], r[1], r[5]) for r in rows] == [
+        (line["group"], line["item"], line["price"]) for line in bill[:-1]
+    ]
+    assert bill[-1]["price"] in str(tab.locator("#bill strong").text_content())
+    prints = tab.locator("#prints tbody td:first-child").all_text_contents()
+    listed = [line["item"] for line in bill if line["group"] == "prints"]
+    assert sorted(prints) == sorted(listed)
+    minutes = next(line for line in bill if line["item"] == "holder/holder.stl")["for"]
+    hours = tab.locator("#prints tr", has_text="holder/holder.stl").locator("td").nth(3)
+    found = re.search(r"some (\d+) min", minutes)
+    assert found
+    assert hours.text_content() == "{} h {:02d} min".format(*divmod(int(found[1]), 60))
+
+
+def test_the_page_is_no_part_of_the_build(site: Path) -> None:
+    design = read_design(site / "design.json")
+    assert all(m.passed for m in measure(site, design))
+    assert "index.html" not in read_folder(site, "site").sha256
+
+
+def test_a_folder_that_is_none_is_refused(
+    tmp_path: Path, edited: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["page", "--out", str(tmp_path)]) == 2
+    assert "has no usable manifest.json" in capsys.readouterr().err
+    (edited / "checks.json").write_text("[{}]", encoding="utf-8")
+    assert main(["page", "--out", str(edited)]) == 2
+    assert "checks.json: cannot be read" in capsys.readouterr().err
+    (edited / "bom.csv").unlink()
+    assert main(["page", "--out", str(edited)]) == 2
+    assert "files are missing, such as bom.csv" in capsys.readouterr().err
