@@ -66,5 +66,6 @@ def opened(browser: Browser, site: Path) -> Iterator[Opened]:
     yield open_page
     for context in contexts:
         context.close()
-    assert said == []
+    # Pictures of a view that a processor draws are slow, and Chromium says so.
+    assert [text for text in said if "GPU stall due to ReadPixels" not in text] == []
     assert len([url for url in asked if not url.startswith(("data:", "blob:"))]) == len(contexts)

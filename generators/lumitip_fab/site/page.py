@@ -1,5 +1,6 @@
 """The page about an output folder: one HTML file that needs nothing else."""
 
+import base64
 import json
 from collections.abc import Sequence
 from html import escape
@@ -12,6 +13,7 @@ from lumitip_fab.site.boards import Followed, board_svg
 from lumitip_fab.site.cells import CellRecord, cell_records
 from lumitip_fab.site.checks import check_rows, figure
 from lumitip_fab.site.folder import Folder
+from lumitip_fab.site.library import three_js
 from lumitip_fab.site.masks import grid_svg, mask_svg
 from lumitip_fab.site.tables import (
     Figure,
@@ -28,7 +30,9 @@ from lumitip_fab.site.tables import (
 from lumitip_fab.site.targets import Targets
 from lumitip_fab.text import data_file
 
-SCRIPTS = ("follow.js", "tables.js", "start.js")
+SCRIPTS = ("follow.js", "tables.js", "scene.js", "viewer.js", "model.js", "start.js")
+SCENES = ("assembly/system.glb", "assembly/assembly.glb")
+"""The scene is the first of these that the folder has."""
 WIRING = "wiring/wiring.svg"
 
 
@@ -69,10 +73,18 @@ def page(folder: Folder, figures: Sequence[Figure]) -> str:
         "style": data_file("site/page.css"),
         "script": "\n".join(data_file(f"site/{name}") for name in SCRIPTS),
         "data": _json(data),
+        "three": three_js(),
+        "scene": _scene(folder),
     }
     values |= {f.name: _finger(folder, f.name, records) for f in design.fingers}
     values |= {f"{f.name}_mask": mask_svg(folder, f) for f in design.fingers}
     return Template(data_file("site/page.html")).substitute(values)
+
+
+def _scene(folder: Folder) -> str:
+    """The GLB of the whole system, or of both fingers, in base 64."""
+    file = next(path for path in SCENES if path in folder.manifest.files)
+    return base64.b64encode((folder.out / file).read_bytes()).decode()
 
 
 def _json(data: Any) -> str:

@@ -10,7 +10,7 @@ function panelsOf(name) {
 
 function show(names, from) {
   for (const element of all(".lit")) element.classList.remove("lit");
-  for (const button of all(".show[aria-pressed=true]")) button.setAttribute("aria-pressed", "false");
+  for (const button of all(".show")) button.setAttribute("aria-pressed", "false");
   [shown.names, shown.from] = [names, from];
   const lit = names.flatMap((name) => [...(parts.get(name) || []), ...panelsOf(name)]);
   for (const element of lit) element.classList.add("lit");

@@ -1,0 +1,160 @@
+// The controls of the 3D view.
+function webgl() {
+  try {
+    return Boolean(document.createElement("canvas").getContext("webgl2"));
+  } catch {
+    return false;
+  }
+}
+
+function colours() {
+  const style = getComputedStyle(document.documentElement);
+  const [on, near] = ["--on", "--near"].map((name) => style.getPropertyValue(name).trim());
+  return { on, near };
+}
+
+function startModel() {
+  const box = byId("canvas");
+  if (!webgl()) {
+    byId("no-model").hidden = false;
+    box.hidden = byId("model-controls").hidden = true;
+    return;
+  }
+  const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
+  renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+  box.append(renderer.domElement);
+  const model = new Viewer(box, renderer, byId("scene-glb").textContent);
+  window.lumitip = { model };
+  const cellsOf = new Map(data.cells.flatMap((record) =>
+    ["led", "detector"].map((role) => [record.parts[role], record.index])));
+
+  const remark = () => model.cell(data.cells[follow.cell], shown.names, colours());
+  follow.listeners.push(remark);
+  shown.listeners.push((names) => {
+    const kinds = new Set(names.filter(shown.has).map((name) => model.kindOf(name)));
+    switched((kind) => kinds.has(kind), true);
+    remark();
+  });
+  shown.has = (name) => model.bodies.has(name);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", remark);
+
+  switches(model);
+  handle(model, cellsOf);
+  byId("explode").addEventListener("input", (e) => model.explode(e.target.valueAsNumber / 100));
+  const cut = () => {
+    byId("cut-at").disabled = byId("cut").value === "";
+    model.cut(byId("cut").value, byId("cut-at").valueAsNumber / 100);
+  };
+  byId("cut").addEventListener("change", cut);
+  byId("cut-at").addEventListener("input", cut);
+  byId("look-fingers").addEventListener("click", () => {
+    switched(isRest, false);
+    switched((kind) => !isRest(kind), true);
+    model.home();
+  });
+  byId("look-all").addEventListener("click", () => {
+    switched(() => true, true);
+    model.look(() => true, 0.62, 0.15);
+  });
+  for (const [finger, side] of [["emitter", -1], ["receiver", 1]]) {
+    byId(`look-${finger}`).addEventListener("click", () => {
+      switched((kind) => kind.startsWith(`${finger}.`), true);
+      switched((kind) => !kind.startsWith(`${finger}.`), false);
+      model.look((name) => name.startsWith(`${finger}.`), side * Math.PI / 2, 0);
+    });
+  }
+  switched(isRest, false);
+}
+
+const isRest = (kind) => !FINGERS.includes(kind.split(".")[0]);
+
+// Kinds of bodies on or off, with their check boxes.
+function switched(which, visible) {
+  for (const box of all("#switches input")) {
+    if (!which(box.dataset.kind) || box.checked === visible) continue;
+    box.checked = visible;
+    box.dispatchEvent(new Event("change"));
+  }
+}
+
+// A check box for each kind of body, in the order of the file.
+function switches(model) {
+  const groups = new Map(["emitter", "receiver", "rest"].map((title) => [title, []]));
+  for (const kind of new Set([...model.bodies.keys()].map((name) => model.kindOf(name)))) {
+    const [group, part] = kind.split(".");
+    if (!isRest(kind)) groups.get(group).push([kind, part]);
+    else groups.get("rest").push([kind, `${group} ${part}`.replace(/ (body|envelope)$/, "")]);
+  }
+  for (const [title, entries] of groups) {
+    if (!entries.length) continue;
+    const set = document.createElement("fieldset");
+    set.append(Object.assign(document.createElement("legend"), { textContent: title }));
+    for (const [kind, label] of entries) {
+      const box = document.createElement("input");
+      [box.type, box.checked] = ["checkbox", true];
+      box.dataset.kind = kind;
+      box.addEventListener("change", () => model.toggle(kind, box.checked));
+      const text = document.createElement("label");
+      text.append(box, label);
+      set.append(text);
+    }
+    byId("switches").append(set);
+  }
+}
+
+const KEYS = {
+  ArrowLeft: (m) => m.turn(0.12, 0), ArrowRight: (m) => m.turn(-0.12, 0),
+  ArrowUp: (m) => m.turn(0, 0.12), ArrowDown: (m) => m.turn(0, -0.12),
+  "+": (m) => m.zoom(0.87), "-": (m) => m.zoom(1.15), 0: (m) => m.home(),
+};
+
+function handle(model, cellsOf) {
+  const { canvas } = model;
+  const held = new Map();
+  let travelled = 0;
+  canvas.tabIndex = 0;
+  canvas.setAttribute("role", "application");
+  canvas.setAttribute("aria-label",
+    "3D view. Arrow keys turn it, plus and minus zoom, 0 goes back. Click a cell to follow it.");
+  canvas.addEventListener("keydown", (event) => {
+    if (!KEYS[event.key] || event.ctrlKey || event.metaKey) return;
+    KEYS[event.key](model);
+    event.preventDefault();
+  });
+  canvas.addEventListener("wheel", (event) => {
+    if (document.activeElement !== canvas) return; // the page scrolls until the view is chosen
+    model.zoom(Math.exp(Math.sign(event.deltaY) * 0.09));
+    event.preventDefault();
+  }, { passive: false });
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    held.set(event.pointerId, event);
+    if (held.size === 1) travelled = 0;
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    const before = held.get(event.pointerId);
+    if (!before) return;
+    const [dx, dy] = [event.clientX - before.clientX, event.clientY - before.clientY];
+    travelled += Math.hypot(dx, dy);
+    const other = [...held.values()].find((e) => e.pointerId !== event.pointerId);
+    held.set(event.pointerId, event);
+    if (other) {
+      const apart = (e) => Math.hypot(e.clientX - other.clientX, e.clientY - other.clientY) || 1;
+      model.zoom(apart(before) / apart(event));
+      model.pan(dx / 2, dy / 2);
+    } else if (event.buttons === 2 || event.shiftKey) model.pan(dx, dy);
+    else model.turn(dx * 0.008, dy * 0.008);
+  });
+  for (const name of ["pointerup", "pointercancel"]) {
+    canvas.addEventListener(name, (event) => {
+      held.delete(event.pointerId);
+      if (name !== "pointerup" || travelled > 5 || event.button) return;
+      const hit = model.at(event.clientX, event.clientY, cellsOf);
+      byId("hit").textContent = hit.name;
+      if (hit.cell !== null) choose(hit.cell);
+    });
+  }
+}
+
+startModel();

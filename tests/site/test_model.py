@@ -1,0 +1,150 @@
+"""The 3D view of the page: pixels, bodies, and the cell."""
+
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from playwright.sync_api import Page
+
+from lumitip_fab.checks.readers.scene import read_scene
+from lumitip_fab.site.library import three_js
+from site_page import marked
+
+pytestmark = pytest.mark.slow
+
+PLACES = """names => names.map(name => {
+    const { model } = lumitip, box = model.canvas.getBoundingClientRect();
+    const at = model.middleOf(model.bodies.get(name)).project(model.camera);
+    return [box.x + box.width * (at.x + 1) / 2, box.y + box.height * (1 - at.y) / 2];
+})"""
+
+
+def seen(tab: Page) -> np.ndarray:
+    """The colours of the view, shape `(height, width, 3)`, once it stands still."""
+    tab.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    shot = tab.locator("#canvas").screenshot()
+    return np.asarray(Image.open(BytesIO(shot)).convert("RGB"), int)
+
+
+def differ(one: np.ndarray, other: np.ndarray) -> float:
+    """Share of the pixels that differ."""
+    return float((abs(one - other) > 24).any(axis=2).mean())
+
+
+def bodies(tab: Page) -> set[str]:
+    """Names of the bodies that are switched on."""
+    script = "[...lumitip.model.bodies.values()].filter(b => b.visible).map(b => b.name)"
+    return set(tab.evaluate(script))
+
+
+def orange(pixels: np.ndarray) -> np.ndarray:
+    """Where the colour of the chosen cell is, shape `(n, 2)`: rows and columns."""
+    red, green, blue = np.moveaxis(pixels, 2, 0)
+    return np.argwhere((red > 200) & (abs(green - 90) < 45) & (blue < 70))
+
+
+def test_every_body_of_the_file_is_drawn_in_its_place(opened, site: Path) -> None:  # type: ignore[no-untyped-def]
+    scene = read_scene(site / "assembly/system.glb")
+    tab = opened("", color_scheme="light")
+    middles = tab.evaluate(
+        "[...lumitip.model.bodies].map(([name, b]) => [name, ...lumitip.model.middleOf(b)])"
+    )
+    assert {name for name, *_ in middles} == set(scene.nodes)
+    for name, *middle in middles:
+        points = scene.nodes[name].in_scene_mm
+        wanted = (points.min(axis=0) + points.max(axis=0)) / 2
+        # The browser bounds corners of the box in the body's own frame.
+        assert np.abs(np.array(middle) - wanted).max() < 0.8, name
+
+
+def test_parts_go_on_and_off_and_apart(opened) -> None:  # type: ignore[no-untyped-def]
+    tab = opened("#cell-17", color_scheme="light", viewport={"width": 1440, "height": 900})
+    first = seen(tab)
+    assert 0.03 < (abs(first - first[2, 2]) > 30).any(axis=2).mean() < 0.6
+    tab.locator('#switches [data-kind="emitter.backing"]').uncheck()
+    assert "emitter.backing" not in bodies(tab)
+    without = seen(tab)
+    assert differ(first, without) > 0.01
+    tab.locator('#switches [data-kind="emitter.backing"]').check()
+    assert differ(first, seen(tab)) < 0.001
+    tab.locator("#explode").fill("100")
+    apart = seen(tab)
+    assert differ(first, apart) > 0.03
+    tab.locator("#explode").fill("0")
+    assert differ(first, seen(tab)) < 0.001
+    tab.locator("#cut").select_option("1")
+    assert differ(first, seen(tab)) > 0.03
+    tab.locator("#cut").select_option("")
+    assert differ(first, seen(tab)) < 0.001
+
+
+def test_the_whole_system_and_back(opened) -> None:  # type: ignore[no-untyped-def]
+    tab = opened()
+    assert not any(name.startswith(("gripper", "flange")) for name in bodies(tab))
+    tab.locator("#look-all").click()
+    assert {"gripper.envelope", "flange.lower", "holder.tray"} <= bodies(tab)
+    tab.locator("#look-fingers").click()
+    assert not any(name.startswith(("gripper", "flange")) for name in bodies(tab))
+
+
+def test_a_cell_is_marked_and_followed_in_3d(opened) -> None:  # type: ignore[no-untyped-def]
+    tab = opened("#cell-17", color_scheme="light", viewport={"width": 1440, "height": 900})
+    tab.locator("#look-receiver").click()
+    for cell in (17, 0):
+        tab.evaluate(f"choose({cell})")
+        tab.locator("#canvas").scroll_into_view_if_needed()
+        ((x, y),) = tab.evaluate(PLACES, [f"receiver.Q{cell + 1}"])
+        box = tab.locator("#canvas").bounding_box()
+        assert box is not None
+        found = orange(seen(tab))
+        assert len(found) > 5
+        assert np.hypot(*(found - (y - box["y"], x - box["x"])).T).min() < 6
+
+
+def test_a_click_on_a_device_chooses_its_cell(opened) -> None:  # type: ignore[no-untyped-def]
+    tab = opened("#cell-0", viewport={"width": 1440, "height": 900})
+    tab.locator("#look-receiver").click()
+    tab.locator("#canvas").scroll_into_view_if_needed()
+    for cell in (17, 4, 31):
+        ((x, y),) = tab.evaluate(PLACES, [f"receiver.Q{cell + 1}"])
+        tab.mouse.click(x, y)
+        assert marked(tab, "view") == [cell]
+        assert str(tab.locator("#hit").text_content()).startswith("receiver.")
+
+
+def test_keys_and_the_mouse_turn_it(opened) -> None:  # type: ignore[no-untyped-def]
+    tab = opened("", color_scheme="light")
+    canvas = tab.locator("#canvas canvas")
+    canvas.focus()
+    first = seen(tab)
+    tab.keyboard.press("ArrowLeft")
+    tab.keyboard.press("+")
+    assert differ(first, seen(tab)) > 0.01
+    tab.keyboard.press("0")
+    assert differ(first, seen(tab)) < 0.002
+    box = canvas.bounding_box()
+    assert box is not None
+    tab.mouse.move(box["x"] + 100, box["y"] + 60)
+    tab.mouse.down()
+    tab.mouse.move(box["x"] + 220, box["y"] + 90)
+    tab.mouse.up()
+    assert differ(first, seen(tab)) > 0.01
+
+
+def test_a_line_of_a_table_is_shown_in_3d(opened) -> None:  # type: ignore[no-untyped-def]
+    tab = opened("", color_scheme="light")
+    tab.get_by_role("button", name="Show holder/holder.stl").first.click()
+    assert "holder.tray" in bodies(tab)
+    marks = tab.evaluate("[...lumitip.model.marked]")
+    assert "holder.tray" in marks
+    tab.keyboard.press("Escape")
+    assert "holder.tray" not in tab.evaluate("[...lumitip.model.marked]")
+
+
+def test_the_library_has_its_licence_and_is_whole() -> None:
+    script = three_js()
+    assert "Permission is hereby granted, free of charge" in script
+    assert 500_000 < len(script) < 800_000
+    assert "</script" not in script
