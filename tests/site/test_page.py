@@ -3,7 +3,9 @@
 import csv
 import importlib.util
 import json
+import os
 import re
+import subprocess
 from html import unescape
 from pathlib import Path
 from urllib.parse import unquote
@@ -147,6 +149,28 @@ def test_the_page_is_no_part_of_the_build(site: Path) -> None:
     design = read_design(site / "design.json")
     assert all(m.passed for m in measure(site, design))
     assert "index.html" not in read_folder(site, "site").sha256
+
+
+def test_make_outputs_ends_with_the_page(
+    site: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of a check that fails the page is written too, and `make` fails."""
+    assert main(["page", "--out", str(site)]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == f"open {site}/index.html in a browser"
+    program = tmp_path / "lumitip-fab"
+    program.write_text('#!/bin/sh\necho $1; test "$1" != check || exit $FAKE\n')
+    program.chmod(0o755)
+    for code in (0, 1):
+        made = subprocess.run(
+            ["make", "outputs", f"BIN={tmp_path}", f"FAB={program}", f"OUT={tmp_path}/out"],
+            cwd=Path(__file__).parents[2],
+            env={**os.environ, "FAKE": str(code)},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert made.stdout.splitlines()[:3] == ["build", "check", "page"]
+        assert (made.returncode == 0) == (code == 0)
 
 
 def test_a_folder_that_is_none_is_refused(

@@ -4,8 +4,13 @@ folder    the files of an output folder that the page shows
 cells     what belongs to each cell: parts, nets, wires, numbers
 boards    boards as drawings with copper by net
 masks     masks at 1:1, and the grid of cells
-prints    printed parts
-tables    bill, files, figures beside the publication
+targets   what a line of a table is about
+tables    bill, printed parts, orders, files, figures beside the publication
 checks    every check with value, limit and margin
+library   three.js with its licence
 page      the page itself
+
+`page.html` and `page.css` are its form. Scripts, in the order in which it has them: `follow.js` (a cell
+in all panels), `tables.js`, `scene.js`, `viewer.js` and `model.js` (3D), `rays.js`, `twin.js` and
+`grasp.js` (the optical twin), `start.js`.
 """

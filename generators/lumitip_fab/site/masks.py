@@ -72,13 +72,14 @@ def grid_svg(x_mm: Sequence[float], y_mm: Sequence[float], pitch_mm: float) -> s
         points = " ".join(f"{x + dx:.2f},{dy - y:.2f}" for dx, dy in corners)
         cells.append(
             f'<g class="pixel cell" data-cell="{cell}" aria-label="Cell {cell}: value {cell} of a '
-            f'frame"><polygon points="{points}"/><text x="{x:.2f}" y="{-y:.2f}">{cell}</text></g>'
+            f'frame"><polygon points="{points}"/><text x="{x:.2f}" y="{-0.5 - y:.2f}">{cell}</text>'
+            f'<text class="value" x="{x:.2f}" y="{1.2 - y:.2f}"></text></g>'
         )
-    margin = radius + 3.5
+    margin = radius + 3
     left, top = min(x_mm) - margin, -max(y_mm) - margin
     wide, high = max(x_mm) + margin - left, -min(y_mm) + margin - top
     return (
         f'<svg class="grid" id="grid" viewBox="{left:.2f} {top:.2f} {wide:.2f} {high:.2f}" '
         'role="group" aria-label="Cells as the view shows them, tip up">'
-        f'<g>{"".join(cells)}</g><g id="scene"></g></svg>'
+        f'<g>{"".join(cells)}</g><g id="scene"></g><polygon id="ring"/></svg>'
     )

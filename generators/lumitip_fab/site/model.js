@@ -24,7 +24,7 @@ function startModel() {
   renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
   box.append(renderer.domElement);
   const model = new Viewer(box, renderer, byId("scene-glb").textContent);
-  window.lumitip = { model };
+  window.lumitip = { ...window.lumitip, model };
   const cellsOf = new Map(data.cells.flatMap((record) =>
     ["led", "detector"].map((role) => [record.parts[role], record.index])));
 

@@ -3,12 +3,15 @@
 import base64
 import json
 from collections.abc import Sequence
+from dataclasses import asdict
 from html import escape
 from string import Template
 from typing import Any
 
 import numpy as np
 
+from lumitip.layout import Layout
+from lumitip.twin import Model
 from lumitip_fab.site.boards import Followed, board_svg
 from lumitip_fab.site.cells import CellRecord, cell_records
 from lumitip_fab.site.checks import check_rows, figure
@@ -30,7 +33,17 @@ from lumitip_fab.site.tables import (
 from lumitip_fab.site.targets import Targets
 from lumitip_fab.text import data_file
 
-SCRIPTS = ("follow.js", "tables.js", "scene.js", "viewer.js", "model.js", "start.js")
+SCRIPTS = (
+    "follow.js",
+    "tables.js",
+    "scene.js",
+    "viewer.js",
+    "model.js",
+    "rays.js",
+    "twin.js",
+    "grasp.js",
+    "start.js",
+)
 SCENES = ("assembly/system.glb", "assembly/assembly.glb")
 """The scene is the first of these that the folder has."""
 WIRING = "wiring/wiring.svg"
@@ -51,7 +64,12 @@ def page(folder: Folder, figures: Sequence[Figure]) -> str:
     checks, parts = check_rows(folder, targets), prints(folder)
     used, packs, stated = totals(folder)
     middle = int(np.hypot(layout.x_mm, layout.y_mm).argmin())
-    data = {"cells": [r.data() for r in records], "checks": checks, "middle": middle}
+    data = {
+        "cells": [record.data() for record in records],
+        "checks": checks,
+        "middle": middle,
+        "twin": twin_data(layout),
+    }
     values = {
         "title": f"{escape(design.title.name)} {escape(design.title.revision)}",
         "hash": layout.design_hash[:12],
@@ -79,6 +97,12 @@ def page(folder: Folder, figures: Sequence[Figure]) -> str:
     values |= {f.name: _finger(folder, f.name, records) for f in design.fingers}
     values |= {f"{f.name}_mask": mask_svg(folder, f) for f in design.fingers}
     return Template(data_file("site/page.html")).substitute(values)
+
+
+def twin_data(layout: Layout) -> dict[str, Any]:
+    """Cells and optical model, as the twin in the page takes them."""
+    model = asdict(Model.from_layout(layout))
+    return {"x_mm": layout.x_mm.tolist(), "y_mm": layout.y_mm.tolist(), "model": model}
 
 
 def _scene(folder: Folder) -> str:

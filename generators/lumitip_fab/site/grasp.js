@@ -1,0 +1,122 @@
+// What the cells read of an edge, a cable or a corner that is drawn over them.
+const GRASP = { kind: "edge", x: -3, y: 1.5, angle_deg: 20, diameter: 3 };
+const FAR_MM = 200;
+const SLIDERS = { x: "x", y: "y", angle: "angle_deg", diameter: "diameter" };
+
+// Colour of a value: a straight way through Oklab, as in the live view.
+function rampOf(value) {
+  const share = value / FULL;
+  const [dark, light] = [[0.25, -0.015, -0.09], [0.93, -0.035, 0.13]];
+  const [l, a, b] = dark.map((start, i) => start + share * (light[i] - start));
+  const long = (l + 0.3963377774 * a + 0.2158037573 * b) ** 3;
+  const middle = (l - 0.1055613458 * a - 0.0638541728 * b) ** 3;
+  const short = (l - 0.0894841775 * a - 1.291485548 * b) ** 3;
+  const linear = [
+    4.0767416621 * long - 3.3077115913 * middle + 0.2309699292 * short,
+    -1.2684380046 * long + 2.6097574011 * middle - 0.3413193965 * short,
+    -0.0041960863 * long - 0.7034186147 * middle + 1.7076147010 * short,
+  ].map((v) => Math.min(Math.max(v, 0), 1));
+  const coded = linear.map((v) => (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055));
+  return `rgb(${coded.map((v) => Math.round(255 * v)).join(" ")})`;
+}
+const RAMP = Array.from({ length: FULL + 1 }, (_, value) => rampOf(value));
+
+class Grasp {
+  constructor(twin) {
+    this.twin = twin;
+    this.scene = byId("scene");
+    this.pixels = data.cells.map((_, cell) => {
+      const group = document.querySelector(`#grid [data-cell="${cell}"]`);
+      return { hexagon: group.querySelector("polygon"), texts: all("text", group) };
+    });
+    this.draw();
+  }
+
+  draw() {
+    const values = this.twin.values(GRASP);
+    values.forEach((value, cell) => {
+      const { hexagon, texts } = this.pixels[cell];
+      const whole = Math.round(value);
+      hexagon.style.fill = RAMP[whole];
+      texts[1].textContent = whole;
+      for (const text of texts) text.style.fill = whole > 120 ? "#14181f" : "#fff";
+    });
+    this.values = values;
+    this.drawShape();
+    const { hexagon } = this.pixels[follow.cell];
+    byId("ring").setAttribute("points", hexagon.getAttribute("points"));
+    byId("reads").textContent =
+      `Cell ${follow.cell} reads ${Math.round(values[follow.cell])} of ${FULL}.`;
+  }
+
+  // In the object's own frame: x along it, y to its left.
+  drawShape() {
+    const { kind, x, y, angle_deg: angle, diameter } = GRASP;
+    const corners = {
+      edge: [[-FAR_MM, 0], [FAR_MM, 0], [FAR_MM, -FAR_MM], [-FAR_MM, -FAR_MM]],
+      cable: [[-FAR_MM, 1], [FAR_MM, 1], [FAR_MM, -1], [-FAR_MM, -1]].map(([along, side]) =>
+        [along, (side * diameter) / 2]),
+      corner: [[0, 0], [FAR_MM, FAR_MM], [FAR_MM, -FAR_MM]],
+    }[kind];
+    if (!corners) return this.scene.replaceChildren();
+    const shape = document.createElementNS("http://www.w3.org/2000/svg", "polygon");
+    shape.setAttribute("points", corners.map(([u, v]) => `${u},${-v}`).join(" "));
+    shape.setAttribute("transform", `translate(${x} ${-y}) rotate(${-angle})`);
+    return this.scene.replaceChildren(shape);
+  }
+
+  change(values) {
+    Object.assign(GRASP, values);
+    for (const [id, name] of Object.entries(SLIDERS)) byId(`grasp-${id}`).value = GRASP[name];
+    byId("grasp-kind").value = GRASP.kind;
+    byId("grasp-diameter").closest("label").hidden = GRASP.kind !== "cable";
+    byId("grasp-places").hidden = GRASP.kind === "none";
+    this.draw();
+  }
+}
+
+function startGrasp() {
+  const grasp = new Grasp(new Twin(data.twin));
+  const svg = byId("grid");
+  window.lumitip = { ...window.lumitip, grasp };
+  follow.listeners.push(() => grasp.draw());
+  byId("grasp-kind").addEventListener("change", (e) => grasp.change({ kind: e.target.value }));
+  for (const [id, name] of Object.entries(SLIDERS)) {
+    const moment = id === "diameter" ? "change" : "input"; // each diameter needs its own table
+    byId(`grasp-${id}`).addEventListener(moment, (event) =>
+      grasp.change({ [name]: event.target.valueAsNumber }));
+  }
+  let held = null;
+  let moved = false;
+  const place = (event) => {
+    const point = new DOMPoint(event.clientX, event.clientY);
+    const { x, y } = point.matrixTransform(svg.getScreenCTM().inverse());
+    return [x, -y];
+  };
+  svg.addEventListener("pointerdown", (event) => {
+    [held, moved] = [[...place(event), GRASP.x, GRASP.y, event.clientX, event.clientY], false];
+  });
+  svg.addEventListener("pointermove", (event) => {
+    if (!held || GRASP.kind === "none") return;
+    const [startX, startY, shapeX, shapeY, clientX, clientY] = held;
+    if (!moved && Math.hypot(event.clientX - clientX, event.clientY - clientY) < 4) return;
+    if (!moved) svg.setPointerCapture(event.pointerId);
+    moved = true;
+    const [x, y] = place(event);
+    const within = (v) => Math.min(Math.max(v, -25), 25);
+    grasp.change({ x: within(shapeX + x - startX), y: within(shapeY + y - startY) });
+  });
+  for (const name of ["pointerup", "pointercancel"]) {
+    svg.addEventListener(name, () => {
+      held = null;
+    });
+  }
+  // The end of a drag is no click on a cell.
+  svg.addEventListener("click", (event) => {
+    if (moved) event.stopPropagation();
+    moved = false;
+  });
+  grasp.change({});
+}
+
+startGrasp();

@@ -1,0 +1,171 @@
+"""The twin in the page beside that in Python: the same values within a count, and fast."""
+
+from collections.abc import Callable
+from dataclasses import asdict
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page
+
+from lumitip.layout import Layout
+from lumitip.twin import Cable, Corner, HalfPlane, Model, Thing, Twin
+from lumitip_fab.config.load import load
+from lumitip_fab.derive import derive
+from page_colours import ramp
+from site_page import marked
+
+pytestmark = pytest.mark.slow
+
+COUNT = 1.0
+MOST_MS = 8.0
+Opened = Callable[..., Page]
+VALUES = """([{x_mm, y_mm, model}, shapes]) => {
+    const twin = new Twin({x_mm, y_mm, model});
+    return shapes.map(shape => twin.values(shape));
+}"""
+
+
+def edge(place: np.ndarray) -> tuple[dict[str, object], Thing]:
+    """An edge, as page and Python have it."""
+    x, y, angle, _ = place.tolist()
+    radians = np.radians(angle)
+    offset = float(y * np.cos(radians) - x * np.sin(radians))
+    return {"kind": "edge", "x": x, "y": y, "angle_deg": angle}, HalfPlane(offset, angle)
+
+
+def cable(place: np.ndarray) -> tuple[dict[str, object], Thing]:
+    """A cable, likewise."""
+    shape, line = edge(place)
+    diameter = (1.0, 3.0, 4.5)[int(place[3] * 3)]
+    return (
+        shape | {"kind": "cable", "diameter": diameter},
+        Cable(line.offset_mm, line.angle_deg, diameter_mm=diameter),  # type: ignore[attr-defined]
+    )
+
+
+def corner(place: np.ndarray) -> tuple[dict[str, object], Thing]:
+    """A corner, likewise."""
+    x, y, angle, _ = place.tolist()
+    shape = {"kind": "corner", "x": x, "y": y, "angle_deg": angle}
+    return shape, Corner(x, y, angle)
+
+
+@cache
+def places(count: int) -> np.ndarray:
+    """Places (mm), angles (degrees) and a number from 0 to below 1, shape `(count, 4)`."""
+    chance = np.random.default_rng(7)
+    return chance.uniform((-18, -15, -180, 0), (18, 15, 180, 1), (count, 4))
+
+
+def of_page(tab: Page, layout: Layout, model: Model, shapes: list[object]) -> np.ndarray:
+    record = {
+        "x_mm": layout.x_mm.tolist(),
+        "y_mm": layout.y_mm.tolist(),
+        "model": asdict(model),
+    }
+    return np.array(tab.evaluate(VALUES, [record, shapes]))
+
+
+@pytest.mark.parametrize("kind", [edge, cable, corner])
+def test_values_are_those_of_python(
+    opened: Opened, site: Path, kind: Callable[..., object]
+) -> None:
+    layout = Layout.load(site / "layout.json")
+    pairs = [kind(place) for place in places(200)]
+    shapes, things = zip(*pairs, strict=True)  # type: ignore[arg-type]
+    twin = Twin(layout)
+    wanted = np.array([twin.values(thing) for thing in things])
+    found = np.array(
+        opened().evaluate("shapes => shapes.map(s => lumitip.grasp.twin.values(s))", list(shapes))
+    )
+    assert np.ptp(wanted) > 250
+    assert np.abs(found - wanted).max() < COUNT
+
+
+@pytest.mark.parametrize("kind", [edge, cable, corner])
+@pytest.mark.parametrize(
+    ("preset", "changes"),
+    [
+        ("dense", {}),
+        ("asymmetric", {"hole_shape": "circle", "gap_mm": 4.0, "alpha": 0.3, "gain": 1.4}),
+    ],
+)
+def test_other_grids_and_optics(
+    opened: Opened,
+    design_dir: Path,
+    preset: str,
+    changes: dict[str, object],
+    kind: Callable[..., object],
+) -> None:
+    layout = derive(load(design_dir / "presets" / f"{preset}.toml")).layout
+    model = Model.from_layout(layout).changed(**changes)
+    pairs = [kind(place) for place in places(30)]
+    shapes, things = zip(*pairs, strict=True)  # type: ignore[arg-type]
+    twin = Twin(layout, model)
+    wanted = np.array([twin.values(thing) for thing in things])
+    found = of_page(opened(), layout, model, list(shapes))
+    assert np.abs(found - wanted).max() < COUNT
+
+
+def test_a_frame_takes_no_longer_than_8_ms(opened: Opened) -> None:
+    tab = opened()
+    times = tab.evaluate(
+        """() => ["edge", "cable", "corner"].map(kind => {
+            const { grasp } = lumitip;
+            grasp.change({ kind, diameter: 3 });
+            const each = [];
+            for (let i = 0; i < 200; i += 1) {
+                const start = performance.now();
+                const [x, y] = [10 * Math.sin(i / 9), 8 * Math.cos(i / 7)];
+                grasp.change({ x, y, angle_deg: i % 180 });
+                document.getElementById("grid").getBoundingClientRect();
+                each.push(performance.now() - start);
+            }
+            return each.sort((a, b) => a - b)[150];
+        })"""
+    )
+    assert max(times) < MOST_MS
+
+
+def test_dragging_moves_the_object_and_chooses_no_cell(opened: Opened) -> None:
+    tab = opened("#cell-0")
+    grid = tab.locator("#grid")
+    grid.scroll_into_view_if_needed()
+    before = tab.evaluate("[...lumitip.grasp.values]")
+    ((x, y),) = tab.evaluate(
+        """() => [15].map(cell => {
+            const box = document.querySelector(`#grid [data-cell="${cell}"]`)
+                .getBoundingClientRect();
+            return [box.x + box.width / 2, box.y + box.height / 2];
+        })"""
+    )
+    tab.mouse.move(x, y)
+    tab.mouse.down()
+    tab.mouse.move(x + 40, y + 30, steps=4)
+    tab.mouse.up()
+    after = tab.evaluate("[...lumitip.grasp.values]")
+    assert np.abs(np.subtract(after, before)).max() > 50
+    assert marked(tab, "view") == [0]
+    tab.mouse.click(x, y)
+    assert marked(tab, "view") == [15]
+
+
+def test_each_pixel_shows_its_value_in_its_colour(opened: Opened) -> None:
+    tab = opened("#cell-17")
+    tab.locator("#grasp-kind").select_option("corner")
+    tab.locator("#grasp-angle").fill("-60")
+    shown = tab.locator("#grid .value").all_text_contents()
+    values = tab.evaluate("[...lumitip.grasp.values]")
+    assert [int(text) for text in shown] == [round(value) for value in values]
+    assert min(values) < 30 and max(values) == 255
+    colours = tab.evaluate(
+        "[...document.querySelectorAll('#grid .cell polygon')].map(p => getComputedStyle(p).fill)"
+    )
+    wanted = [f"rgb({', '.join(map(str, ramp(value).astype(int)))})" for value in values]
+    assert colours == wanted
+    reads = str(tab.locator("#reads").text_content())
+    assert reads == f"Cell 17 reads {round(values[17])} of 255."
+    tab.locator("#grasp-kind").select_option("none")
+    assert set(tab.locator("#grid .value").all_text_contents()) == {"255"}
