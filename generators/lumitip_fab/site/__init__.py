@@ -10,7 +10,7 @@ checks    every check with value, limit and margin
 library   three.js with its licence
 page      the page itself
 
-`page.html` and `page.css` are its form. Scripts, in the order in which it has them: `follow.js` (a cell
-in all panels), `tables.js`, `scene.js`, `viewer.js` and `model.js` (3D), `rays.js`, `twin.js` and
-`grasp.js` (the optical twin), `start.js`.
+`page.html` and `page.css` are its form. Scripts, in the order in which it has them: `follow.js` (a
+cell in all panels), `tables.js`, `scene.js`, `viewer.js` and `model.js` (3D), `rays.js`, `twin.js`
+and `grasp.js` (the optical twin), `start.js`.
 """
