@@ -9,6 +9,7 @@ from PIL import Image
 from playwright.sync_api import Page
 
 from lumitip_fab.checks.readers.scene import read_scene
+from lumitip_fab.checks.readers.vertices import corners_mm
 from lumitip_fab.site.library import three_js
 from site_page import marked
 
@@ -133,9 +134,54 @@ def test_keys_and_the_mouse_turn_it(opened) -> None:  # type: ignore[no-untyped-
     assert differ(first, seen(tab)) > 0.01
 
 
+def on_bed(tab: Page) -> np.ndarray:
+    """The colours of the view of the bed."""
+    tab.locator("#bed canvas").scroll_into_view_if_needed()
+    tab.wait_for_timeout(500)
+    return np.asarray(Image.open(BytesIO(tab.locator("#bed").screenshot())).convert("RGB"), int)
+
+
+def test_every_print_lies_on_the_bed_as_in_its_file(opened, site: Path) -> None:  # type: ignore[no-untyped-def]
+    tab = opened("", color_scheme="light")
+    tab.locator("#bed").scroll_into_view_if_needed()
+    tab.wait_for_selector("#bed canvas")
+    first = on_bed(tab)
+    boxes = tab.evaluate(
+        """[...lumitip.bed.viewer.bodies].map(([file, body]) => {
+            body.geometry.computeBoundingBox();
+            const { min, max } = body.geometry.boundingBox;
+            return [file, [...min], [...max], body.geometry.index.count / 3];
+        })"""
+    )
+    assert len(boxes) >= 8
+    for file, low, high, triangles in boxes:
+        corners = corners_mm(site / file)
+        assert np.abs(low - corners.min(axis=0)).max() < 0.005, file
+        assert np.abs(high - corners.max(axis=0)).max() < 0.005, file
+        assert triangles == len(corners) / 3
+    tab.get_by_role("button", name="Show holder/holder.stl").first.click()
+    assert tab.locator("#bed-part").input_value() == "holder/holder.stl"
+    assert "g of PETG" in str(tab.locator("#bed-text").text_content())
+    assert differ(first, on_bed(tab)) > 0.02
+
+
+def test_the_thinnest_wall_is_marked_in_its_place(opened) -> None:  # type: ignore[no-untyped-def]
+    tab = opened("", color_scheme="light")
+    tab.locator("#query").fill("holder.min_wall")
+    note = str(tab.locator("#check-table tbody td").nth(6).text_content())
+    tab.locator("#check-table tbody .show").click()
+    tab.wait_for_selector("#bed canvas")
+    assert len(orange(on_bed(tab))) > 20
+    place = tab.evaluate("[...lumitip.bed.spot.position]")
+    assert "({:.1f}, {:.1f}, {:.1f})".format(*place) in note
+    assert tab.locator("#bed-part").input_value() == "holder/holder.stl"
+    tab.locator("#bed-part").select_option("fit/fit_plate.stl")
+    assert len(orange(on_bed(tab))) == 0
+
+
 def test_a_line_of_a_table_is_shown_in_3d(opened) -> None:  # type: ignore[no-untyped-def]
     tab = opened("", color_scheme="light")
-    tab.get_by_role("button", name="Show holder/holder.stl").first.click()
+    tab.locator("#bill").get_by_role("button", name="Show holder/holder.stl").click()
     assert "holder.tray" in bodies(tab)
     marks = tab.evaluate("[...lumitip.model.marked]")
     assert "holder.tray" in marks

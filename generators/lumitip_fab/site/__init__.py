@@ -7,10 +7,11 @@ masks     masks at 1:1, and the grid of cells
 targets   what a line of a table is about
 tables    bill, printed parts, orders, files, figures beside the publication
 checks    every check with value, limit and margin
+beds      printed parts on the bed
 library   three.js with its licence
 page      the page itself
 
 `page.html` and `page.css` are its form. Scripts, in the order in which it has them: `follow.js` (a
-cell in all panels), `tables.js`, `scene.js`, `viewer.js` and `model.js` (3D), `rays.js`, `twin.js`
-and `grasp.js` (the optical twin), `start.js`.
+cell in all panels), `tables.js`, `scene.js`, `viewer.js`, `turn.js`, `model.js` and `bed.js`
+(3D), `rays.js`, `twin.js` and `grasp.js` (the optical twin), `start.js`.
 """

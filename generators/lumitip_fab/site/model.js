@@ -13,6 +13,13 @@ function colours() {
   return { on, near };
 }
 
+function rendererIn(box) {
+  const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
+  renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+  box.append(renderer.domElement);
+  return renderer;
+}
+
 function startModel() {
   const box = byId("canvas");
   if (!webgl()) {
@@ -20,10 +27,8 @@ function startModel() {
     box.hidden = byId("model-controls").hidden = true;
     return;
   }
-  const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
-  renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-  box.append(renderer.domElement);
-  const model = new Viewer(box, renderer, byId("scene-glb").textContent);
+  const scene = sceneOf(byId("scene-glb").textContent);
+  const model = new Viewer(box, rendererIn(box), scene, (name) => !isRest(name));
   window.lumitip = { ...window.lumitip, model };
   const cellsOf = new Map(data.cells.flatMap((record) =>
     ["led", "detector"].map((role) => [record.parts[role], record.index])));
@@ -39,7 +44,13 @@ function startModel() {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", remark);
 
   switches(model);
-  handle(model, cellsOf);
+  turnable(model,
+    "3D view. Arrow keys turn it, plus and minus zoom, 0 goes back. Click a cell to follow it.",
+    (event) => {
+      const hit = model.at(event.clientX, event.clientY, cellsOf);
+      byId("hit").textContent = hit.name;
+      if (hit.cell !== null) choose(hit.cell);
+    });
   byId("explode").addEventListener("input", (e) => model.explode(e.target.valueAsNumber / 100));
   const cut = () => {
     byId("cut-at").disabled = byId("cut").value === "";
@@ -99,61 +110,6 @@ function switches(model) {
       set.append(text);
     }
     byId("switches").append(set);
-  }
-}
-
-const KEYS = {
-  ArrowLeft: (m) => m.turn(0.12, 0), ArrowRight: (m) => m.turn(-0.12, 0),
-  ArrowUp: (m) => m.turn(0, 0.12), ArrowDown: (m) => m.turn(0, -0.12),
-  "+": (m) => m.zoom(0.87), "-": (m) => m.zoom(1.15), 0: (m) => m.home(),
-};
-
-function handle(model, cellsOf) {
-  const { canvas } = model;
-  const held = new Map();
-  let travelled = 0;
-  canvas.tabIndex = 0;
-  canvas.setAttribute("role", "application");
-  canvas.setAttribute("aria-label",
-    "3D view. Arrow keys turn it, plus and minus zoom, 0 goes back. Click a cell to follow it.");
-  canvas.addEventListener("keydown", (event) => {
-    if (!KEYS[event.key] || event.ctrlKey || event.metaKey) return;
-    KEYS[event.key](model);
-    event.preventDefault();
-  });
-  canvas.addEventListener("wheel", (event) => {
-    if (document.activeElement !== canvas) return; // the page scrolls until the view is chosen
-    model.zoom(Math.exp(Math.sign(event.deltaY) * 0.09));
-    event.preventDefault();
-  }, { passive: false });
-  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-  canvas.addEventListener("pointerdown", (event) => {
-    canvas.setPointerCapture(event.pointerId);
-    held.set(event.pointerId, event);
-    if (held.size === 1) travelled = 0;
-  });
-  canvas.addEventListener("pointermove", (event) => {
-    const before = held.get(event.pointerId);
-    if (!before) return;
-    const [dx, dy] = [event.clientX - before.clientX, event.clientY - before.clientY];
-    travelled += Math.hypot(dx, dy);
-    const other = [...held.values()].find((e) => e.pointerId !== event.pointerId);
-    held.set(event.pointerId, event);
-    if (other) {
-      const apart = (e) => Math.hypot(e.clientX - other.clientX, e.clientY - other.clientY) || 1;
-      model.zoom(apart(before) / apart(event));
-      model.pan(dx / 2, dy / 2);
-    } else if (event.buttons === 2 || event.shiftKey) model.pan(dx, dy);
-    else model.turn(dx * 0.008, dy * 0.008);
-  });
-  for (const name of ["pointerup", "pointercancel"]) {
-    canvas.addEventListener(name, (event) => {
-      held.delete(event.pointerId);
-      if (name !== "pointerup" || travelled > 5 || event.button) return;
-      const hit = model.at(event.clientX, event.clientY, cellsOf);
-      byId("hit").textContent = hit.name;
-      if (hit.cell !== null) choose(hit.cell);
-    });
   }
 }
 

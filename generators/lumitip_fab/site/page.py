@@ -12,6 +12,7 @@ import numpy as np
 
 from lumitip.layout import Layout
 from lumitip.twin import Model
+from lumitip_fab.site.beds import bed_mesh
 from lumitip_fab.site.boards import Followed, board_svg
 from lumitip_fab.site.cells import CellRecord, cell_records
 from lumitip_fab.site.checks import check_rows, figure
@@ -38,7 +39,9 @@ SCRIPTS = (
     "tables.js",
     "scene.js",
     "viewer.js",
+    "turn.js",
     "model.js",
+    "bed.js",
     "rays.js",
     "twin.js",
     "grasp.js",
@@ -59,9 +62,10 @@ def page(folder: Folder, figures: Sequence[Figure]) -> str:
     Raises:
         OutputError: if a file cannot be read.
     """
-    design, targets = folder.design, Targets(folder)
+    design, parts = folder.design, prints(folder)
+    targets = Targets(folder, [part.file for part in parts])
     layout, records = design.layout, cell_records(folder)
-    checks, parts = check_rows(folder, targets), prints(folder)
+    checks = check_rows(folder, targets)
     used, packs, stated = totals(folder)
     middle = int(np.hypot(layout.x_mm, layout.y_mm).argmin())
     data = {
@@ -69,6 +73,9 @@ def page(folder: Folder, figures: Sequence[Figure]) -> str:
         "checks": checks,
         "middle": middle,
         "twin": twin_data(layout),
+        "prints": [
+            {"file": part.file, "text": part.text, **bed_mesh(folder, part.file)} for part in parts
+        ],
     }
     values = {
         "title": f"{escape(design.title.name)} {escape(design.title.revision)}",
@@ -82,7 +89,8 @@ def page(folder: Folder, figures: Sequence[Figure]) -> str:
         "wiring": _wiring(folder.text(WIRING)),
         "auxiliary": "".join(_auxiliary(folder)),
         "orders": order_table(folder, targets),
-        "prints": print_table(parts, targets),
+        "prints": print_table(parts),
+        "parts": "".join(f"<option>{escape(part.file)}</option>" for part in parts),
         "bill": bill_table(folder, targets),
         "sums": f"{used:.2f} used by one pair of fingers, {packs:.2f} with whole packs",
         "prices": escape(stated),
@@ -131,7 +139,8 @@ def _answers(folder: Folder, checks: Sequence[dict[str, Any]], parts: Sequence[P
     design, (used, packs, stated) = folder.design, totals(folder)
     currency = stated.partition(",")[0]
     minutes = sum(part.minutes * part.number for part in parts)
-    wait_h = design.mould.glue_hard_h + 2 * design.mould.cure_h
+    glue_h, cure_h = design.mould.glue_hard_h, design.mould.cure_h
+    glue = f"glue {glue_h:g} h, " if glue_h else ""
     return [
         _answer(
             "What does it cost?",
@@ -141,8 +150,8 @@ def _answers(folder: Folder, checks: Sequence[dict[str, Any]], parts: Sequence[P
         _answer(
             "How long does it take?",
             f"{duration(minutes).partition(' h')[0]} h of printing",
-            f"then {wait_h:g} h of waiting: glue {design.mould.glue_hard_h:g} h, silicone "
-            f"{design.mould.cure_h:g} h for a trial and {design.mould.cure_h:g} h for the skin. "
+            f"then {glue_h + 2 * cure_h:g} h of waiting: {glue}silicone {cure_h:g} h for a trial "
+            f"and {cure_h:g} h for the skin. "
             '<a href="#prints">Parts</a>',
         ),
         _quality(checks, design.strength.rated_force_n),

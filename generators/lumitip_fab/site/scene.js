@@ -24,8 +24,7 @@ function numbersOf({ record, binary }, which) {
     : new Uint32Array(binary, start, accessor.count);
 }
 
-function materialOf(record, which) {
-  const colour = record.materials[which].pbrMetallicRoughness.baseColorFactor;
+function materialFrom(colour) {
   return new THREE.MeshStandardMaterial({
     color: new THREE.Color(...colour.slice(0, 3)),
     opacity: colour[3],
@@ -40,22 +39,28 @@ function materialOf(record, which) {
   });
 }
 
-function bodyOf(glb, node) {
-  const primitive = glb.record.meshes[node.mesh].primitives[0];
-  const geometry = new THREE.BufferGeometry();
-  const points = numbersOf(glb, primitive.attributes.POSITION).map((v) => SCENE_MM * v);
-  geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
-  geometry.setIndex(new THREE.BufferAttribute(numbersOf(glb, primitive.indices), 1));
-  const body = new THREE.Mesh(geometry, materialOf(glb.record, primitive.material));
-  body.name = node.name;
-  body.userData.colour = body.material.color.clone();
-  body.position.fromArray((node.translation || [0, 0, 0]).map((v) => SCENE_MM * v));
+function bodyFrom(geometry, material, name) {
+  const body = new THREE.Mesh(geometry, material);
+  body.name = name;
+  body.userData.colour = material.color.clone();
   const lines = new THREE.LineSegments(
     new THREE.EdgesGeometry(geometry, SHARP_DEG),
     new THREE.LineBasicMaterial({ color: 0x000000, transparent: true, opacity: 0.28 }),
   );
   lines.raycast = () => {};
   body.add(lines);
+  return body;
+}
+
+function bodyOf(glb, node) {
+  const primitive = glb.record.meshes[node.mesh].primitives[0];
+  const geometry = new THREE.BufferGeometry();
+  const points = numbersOf(glb, primitive.attributes.POSITION).map((v) => SCENE_MM * v);
+  geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
+  geometry.setIndex(new THREE.BufferAttribute(numbersOf(glb, primitive.indices), 1));
+  const colour = glb.record.materials[primitive.material].pbrMetallicRoughness.baseColorFactor;
+  const body = bodyFrom(geometry, materialFrom(colour), node.name);
+  body.position.fromArray((node.translation || [0, 0, 0]).map((v) => SCENE_MM * v));
   return body;
 }
 

@@ -4,6 +4,7 @@ const PANELS = { wires: "wires", grid: "view" };
 
 function panelsOf(name) {
   const [kind, rest] = name.split(".");
+  if (kind === "print") return [byId("bed-panel")];
   const id = PANELS[name] || (kind === "board" || kind === "mask" ? `${kind}-${rest}` : "");
   return id && byId(id) ? [byId(id)] : [];
 }
@@ -17,10 +18,11 @@ function show(names, from) {
   for (const listener of shown.listeners) listener(names);
   byId("shown").hidden = !names.length;
   if (!names.length) return;
-  const more = names.length > 4 ? ` and ${names.length - 4} more` : "";
-  byId("shown-names").textContent = `Shown: ${names.slice(0, 4).join(", ")}${more}`;
+  const titles = [...new Set(names.map((name) => name.replace(/^print\.|@.*/g, "")))];
+  const more = titles.length > 4 ? ` and ${titles.length - 4} more` : "";
+  byId("shown-names").textContent = `Shown: ${titles.slice(0, 4).join(", ")}${more}`;
   from.setAttribute("aria-pressed", "true");
-  const view = names.some(shown.has) ? byId("model") : null;
+  const view = shown.has(names[0]) ? byId("model") : null;
   const place = view || (lit.length ? panelOf(lit[0]) : null);
   place?.scrollIntoView({ block: "center" });
 }

@@ -31,6 +31,14 @@ class Print:
     """For one of them."""
     lies: str
 
+    @property
+    def text(self) -> str:
+        """Its print data in words."""
+        number = f"{self.number} times, each " if self.number > 1 else ""
+        return (
+            f"{number}{duration(self.minutes)}, {self.grams:.1f} g of {self.filament}, {self.lies}."
+        )
+
 
 def prints(folder: Folder) -> list[Print]:
     """Every printed part with its print data; masks only where they are printed."""
@@ -59,7 +67,7 @@ def prints(folder: Folder) -> list[Print]:
     return found
 
 
-def print_table(parts: Sequence[Print], targets: Targets) -> str:
+def print_table(parts: Sequence[Print]) -> str:
     """The printed parts."""
     rows = [
         row(
@@ -72,7 +80,7 @@ def print_table(parts: Sequence[Print], targets: Targets) -> str:
                 escape(part.lies),
             ],
             (2, 3, 4),
-            targets.of_file(part.file),
+            [f"print.{part.file}"],
             part.file,
         )
         for part in parts
@@ -98,7 +106,7 @@ def bill_table(folder: Folder, targets: Targets) -> str:
             row(
                 [
                     *map(escape, (line["group"], line["item"], bought, line["for"])),
-                    escape(f"{line['quantity']} {line['unit']}"),
+                    escape(f"{line['quantity']} {line['unit']}".removesuffix(" piece")),
                     escape(line["price"]),
                 ],
                 (4, 5),

@@ -4,14 +4,14 @@ A body of the 3D view and a part of a board have the same name, such as `emitter
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from lumitip_fab.site.folder import Folder, board_path
 
 _REFERENCE = re.compile(r"\b[A-Z]{1,3}\d+\b")
 _NODE = re.compile(r"\b(?:emitter|receiver|flange|holder|gripper|coupling|robot)\.[A-Za-z]\w*")
 _FINGER = re.compile(r"\b(emitter|receiver)\b")
-_BODIES = {"backing": "backing", "mould": "silicone", "strength": "backing"}
+_PLACE = re.compile(r"at \((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\) of the file's frame")
 _OF_BREAKOUT = "holder.board"
 """The breakout lies in the holder."""
 
@@ -19,10 +19,17 @@ _OF_BREAKOUT = "holder.board"
 class Targets:
     """Names of what an output folder has."""
 
-    def __init__(self, folder: Folder) -> None:
+    def __init__(self, folder: Folder, printed: Collection[str]) -> None:
+        """Collect the names.
+
+        Args:
+            folder: the output folder.
+            printed: STL of the printed parts.
+        """
         design = folder.design
         self.fingers = [finger.name for finger in design.fingers]
         auxiliary = [board.name for board in design.auxiliary_boards]
+        self.printed = printed
         self.boards = [*self.fingers, *auxiliary]
         self.references = {
             board: {part.ref for part in folder.board(board).parts} for board in self.boards
@@ -35,8 +42,8 @@ class Targets:
         """What a file makes."""
         folder, _, name = path.partition("/")
         fingers = _FINGER.findall(name.replace("_", " ")) or self.fingers
-        if folder in ("backing", "mould"):
-            yield from (f"{finger}.{_BODIES[folder]}" for finger in fingers)
+        if folder in ("backing", "interface"):
+            yield from (f"{finger}.{folder}" for finger in fingers)
         elif folder == "mask":
             yield from (f"mask.{finger}" for finger in fingers)
             yield from (f"{finger}.film" for finger in fingers)
@@ -51,6 +58,9 @@ class Targets:
             yield "wires"
         elif path in ("layout.json", "firmware/layout.h"):
             yield "grid"
+        mesh = f"{path.rpartition('.')[0]}.stl"
+        if mesh in self.printed:
+            yield f"print.{mesh}"
 
     def of_board(self, name: str) -> Iterator[str]:
         """A bare board."""
@@ -63,6 +73,8 @@ class Targets:
         file = re.split(r"[:\s]", subject, maxsplit=1)[0]
         rest = f"{subject[len(file) :]} {note}"
         found = _NODE.findall(f"{rest} ")
+        if (place := _PLACE.search(note)) and file in self.printed:
+            found.insert(0, f"print.{file}@{','.join(place.groups())}")
         board = file.split("/")[1] if file.startswith("boards/") and file.count("/") > 1 else ""
         known = self.references.get(board, set())
         found += [f"{board}.{ref}" for ref in _REFERENCE.findall(rest) if ref in known]

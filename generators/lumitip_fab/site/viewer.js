@@ -1,15 +1,14 @@
 // The 3D view: parts on and off, exploded, cut, and a cell or a line of a table marked.
 const SPREAD_MM = 16;
-const LAYERS = { backing: -1.4, board: 0, silicone: 1, film: 1.8, lower: -1, upper: 1, tray: -1 };
+const LAYERS = { interface: -2.4, backing: -1.4, board: 0, silicone: 1, film: 1.8 };
 const ASIDE = { robot: -3.2, coupling: -2, flange_lower: -1, flange_board: -0.6, flange_upper: 0,
   gripper: 1.2, holder: 1.2 };
 const FINGERS = ["emitter", "receiver"];
 const ON_PARTS = 0.45; // of the distance from board to silicone
 
 class Viewer {
-  constructor(box, renderer, base64) {
-    [this.box, this.renderer] = [box, renderer];
-    const { root, bodies } = sceneOf(base64);
+  constructor(box, renderer, { root, bodies }, athome) {
+    [this.box, this.renderer, this.athome] = [box, renderer, athome];
     [this.root, this.bodies, this.marked] = [root, bodies, new Set()];
     this.scene = new THREE.Scene();
     this.scene.add(root, new THREE.HemisphereLight(0xffffff, 0x8d99aa, 0.85));
@@ -105,7 +104,7 @@ class Viewer {
   }
 
   home() {
-    this.look((name) => FINGERS.includes(name.split(".")[0]), 0.62, 0.3);
+    this.look(this.athome, 0.62, 0.3);
   }
 
   turnTo(away, azimuth, height) {
