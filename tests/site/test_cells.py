@@ -139,7 +139,7 @@ def test_firmware_that_disagrees_is_named(edited: Path, opened) -> None:  # type
 def test_copper_that_disagrees_is_named(edited: Path, opened) -> None:  # type: ignore[no-untyped-def]
     path = edited / "boards/receiver/receiver.kicad_pcb"
     blocks = path.read_text(encoding="utf-8").split("(footprint ")
-    at = next(n for n, block in enumerate(blocks) if '"Reference" "U1"' in block)
+    at = next(n for n, block in enumerate(blocks) if 'reference "U1"' in block)
     swapped = {'"Q2")': '"Q3")', '"Q3")': '"Q2")'}
     blocks[at] = re.sub('"Q[23]"\\)', lambda found: swapped[found[0]], blocks[at])
     path.write_text("(footprint ".join(blocks), encoding="utf-8")
