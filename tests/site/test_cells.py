@@ -55,7 +55,10 @@ def test_its_copper_leads_there_too(opened, site: Path) -> None:  # type: ignore
     )
     assert marked(tab, "view") == [17]
     own = tab.evaluate("[...document.querySelectorAll('.own')].map(e => e.dataset.net)")
-    assert set(own) == {"receiver:Q18", *(f"emitter:{t.net}" for t in led.terminals)}
+    beyond = {net for net in own if net.startswith("breakout:")}
+    assert set(own) - beyond == {"receiver:Q18", *(f"emitter:{t.net}" for t in led.terminals)}
+    line = Layout.load(site / "layout.json").adc_pin[17]
+    assert f"breakout:{line}" in beyond
 
 
 def test_the_place_in_the_address_is_a_cell(opened) -> None:  # type: ignore[no-untyped-def]
@@ -146,6 +149,16 @@ def test_copper_that_disagrees_is_named(edited: Path, opened) -> None:  # type: 
     assert main(["page", "--quiet", "--out", str(edited)]) == 0
     fault = opened("#cell-1", edited).locator("#faults").text_content()
     assert fault == "layout.json names channel 2 (pin 15), the copper ends at pin 2"
+
+
+@pytest.mark.parametrize("preset", ["flex", "integrated"])
+def test_cells_of_other_designs_are_followed(built, opened, tmp_path: Path, preset: str) -> None:  # type: ignore[no-untyped-def]
+    folder = Path(shutil.copytree(built(preset), tmp_path / preset))
+    assert main(["page", "--quiet", "--out", str(folder)]) == 0
+    tab = opened("#cell-5", folder)
+    assert marked(tab, "board-emitter") == [5]
+    assert tab.evaluate("data.cells.flatMap(cell => cell.faults)") == []
+    assert {"String", "Net", "Channel", "Wire", "Firmware"} <= set(record(tab))
 
 
 def test_a_layout_that_was_changed_stops_the_page(

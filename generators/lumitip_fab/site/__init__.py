@@ -2,6 +2,7 @@
 
 folder    the files of an output folder that the page shows
 cells     what belongs to each cell: parts, nets, wires, numbers
+wires     the list of cables, and where its wires lead
 boards    boards as drawings with copper by net
 masks     masks at 1:1, and the grid of cells
 targets   what a line of a table is about

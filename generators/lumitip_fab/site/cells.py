@@ -13,7 +13,8 @@ from lumitip_fab.checks.readers.kicad_board import KicadBoard, Part
 from lumitip_fab.design import Finger
 from lumitip_fab.design.frames import on_board_page
 from lumitip_fab.errors import OutputError
-from lumitip_fab.site.folder import CABLES, Folder, board_path
+from lumitip_fab.site.folder import Folder, board_path
+from lumitip_fab.site.wires import Wires, pads
 
 FIRMWARE, LAYOUT = "firmware/layout.h", "layout.json"
 _NEAR_MM = 0.2  # of a device to its cell
@@ -40,50 +41,6 @@ class CellRecord:
     def data(self) -> dict[str, Any]:
         """The record as plain values."""
         return dict(vars(self))
-
-
-class Wires:
-    """The list of cables."""
-
-    def __init__(self, folder: Folder) -> None:
-        self.rows = folder.rows(CABLES)
-        self.known = {auxiliary.name for auxiliary in folder.design.auxiliary_boards}
-        self.boards = {n: folder.board(n) for n in self.known}
-
-    def of(self, board: str, signal: str) -> dict[str, str] | None:
-        """The wire that carries a signal from a board."""
-        found = (r for r in self.rows if (r["from_board"], r["signal"]) == (board, signal))
-        return next(found, None)
-
-    def controller_pin(self, wire: dict[str, str]) -> tuple[str, ...]:
-        """From the far end of a wire to the controller: parts and pads on that board."""
-        if wire["to_board"] not in self.known:
-            return ()
-        board = self.boards[wire["to_board"]]
-        ref, _, pad = wire["to_pad"].partition(".")
-        net = next(
-            t.net for p in board.parts if p.ref == ref for t in p.terminals if t.number == pad
-        )
-        return tuple(_to_socket(board, net, ref))
-
-
-def _to_socket(board: KicadBoard, net: str, without: str) -> Iterator[str]:
-    """A resistor in series, if there is one, and the pad of the controller's socket."""
-    series = [p for p in board.parts if p.ref.startswith("R") and _pads(p, net)]
-    nets = [net]
-    for part in series:
-        others = [t.net for t in part.terminals if t.net != net]
-        if len(part.terminals) == 2 and others and others[0].startswith(net):
-            yield f"{part.ref} {part.value}"
-            nets = others
-    sockets = (p for p in board.parts if p.ref.startswith("J") and p.ref != without)
-    pads = [f"{part.ref}.{number}" for part in sockets for number in _pads(part, nets[0])]
-    if pads:
-        yield ", ".join(pads)
-
-
-def _pads(part: Part, net: str) -> list[str]:
-    return [t.number for t in part.terminals if t.net == net]
 
 
 def devices(board: KicadBoard, finger: Finger) -> list[Part]:
@@ -165,13 +122,13 @@ class _Reader:
         led_nets = self._light(index, notes)
         signal = self._detector(index, notes)
         line, select = self._multiplexer(index, signal, notes)
-        wires = self._wires(line, select, notes)
+        wires, beyond = self._wires(line, select, notes)
         self._numbers(index, line, notes)
         shared = [line, *select] if line else []
         return CellRecord(
             index,
             notes.parts,
-            (f"receiver:{signal}", *led_nets),
+            (f"receiver:{signal}", *led_nets, *beyond),
             (*(f"receiver:{net}" for net in shared), *self._string_nets(index)),
             wires,
             tuple(notes.rows),
@@ -208,9 +165,9 @@ class _Reader:
         package, channel = self.design.packages.multiplexer, int(self.layout.channel[index])
         named = f"U{int(self.layout.mux[index]) + 1}"
         chip = next((p for p in self.receiver.parts if p.ref == named), None)
-        pads = _pads(chip, signal) if chip else []
+        ends = pads(chip, signal) if chip else []
         notes.parts["multiplexer"] = f"receiver.{named}"
-        if chip is None or not pads:
+        if chip is None or not ends:
             file = board_path("receiver")
             notes.faults.append(f"{file}: net {signal} does not lead to {named}")
             return "", []
@@ -219,31 +176,37 @@ class _Reader:
         bits = " ".join(f"{net}={channel >> bit & 1}" for bit, net in enumerate(select))
         line = nets[str(package.output)]
         notes.rows += [
-            ("Multiplexer", f"{named}, {chip.value}, pin {pads[0]}"),
+            ("Multiplexer", f"{named}, {chip.value}, pin {ends[0]}"),
             ("Channel", f"{channel} ({bits})"),
             ("Output", f"pin {package.output}, net {line}"),
         ]
         wanted = str(package.inputs[str(channel)])
-        if wanted not in pads:
+        if wanted not in ends:
             notes.faults.append(
-                f"{LAYOUT} names channel {channel} (pin {wanted}), the copper ends at pin {pads[0]}"
+                f"{LAYOUT} names channel {channel} (pin {wanted}), the copper ends at pin {ends[0]}"
             )
         for part in self.receiver.parts:
-            if part.ref.startswith("R") and (_pads(part, signal) or _pads(part, line)):
+            if part.ref.startswith("R") and (pads(part, signal) or pads(part, line)):
                 notes.parts["pull_up"] = f"receiver.{part.ref}"
                 notes.rows.append(("Pull-up", f"{part.ref}, {part.value}"))
         return line, select
 
-    def _wires(self, line: str, select: Sequence[str], notes: _Notes) -> tuple[str, ...]:
-        """The wire of the analog signal; numbers of all wires that the cell needs."""
+    def _wires(
+        self, line: str, select: Sequence[str], notes: _Notes
+    ) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """Numbers of all wires that the cell needs, and the nets beyond its analog wire."""
         analog = self.wires.of("receiver", line)
+        beyond: tuple[str, ...] = ()
         if analog is not None:
             notes.rows.append(("Wire", _wire(analog)))
-            if way := self.wires.controller_pin(analog):
-                notes.rows.append((analog["to_board"].capitalize(), " → ".join(way)))
+            way = self.wires.way(analog)
+            beyond = way.nets
+            notes.parts.update({f"beyond_{n}": part for n, part in enumerate(way.parts)})
+            if way.steps:
+                notes.rows.append((analog["to_board"].capitalize(), " → ".join(way.steps)))
         of_receiver = [analog, *(self.wires.of("receiver", net) for net in select)]
         of_emitter = [row for row in self.wires.rows if row["from_board"] == "emitter"]
-        return tuple(row["wire"] for row in (*of_receiver, *of_emitter) if row)
+        return tuple(row["wire"] for row in (*of_receiver, *of_emitter) if row), beyond
 
     def _numbers(self, index: int, line: str, notes: _Notes) -> None:
         """Input of the controller, and indices in the firmware."""
