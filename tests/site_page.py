@@ -1,6 +1,11 @@
 """Looking at the page of an output folder."""
 
+from collections.abc import Callable
+
 from playwright.sync_api import Page
+
+Opened = Callable[..., Page]
+"""`opened("#cell-17", folder, color_scheme="dark")`: the page in a browser."""
 
 
 def marked(tab: Page, panel: str) -> list[int]:

@@ -3,14 +3,14 @@
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from lumitip_fab.cli import main
 from programs import program
-
-Opened = Callable[..., Page]
+from site_page import Opened
 
 
 def write_page(out: Path) -> None:
@@ -53,8 +53,8 @@ def opened(browser: Browser, site: Path) -> Iterator[Opened]:
     may have been written to the console, and nothing asked for but the page."""
     contexts, said, asked = [], [], []
 
-    def open_page(place: str = "", folder: Path = site, **options: object) -> Page:
-        context = browser.new_context(offline=True, reduced_motion="reduce", **options)  # type: ignore[arg-type]
+    def open_page(place: str = "", folder: Path = site, **options: Any) -> Page:
+        context = browser.new_context(offline=True, reduced_motion="reduce", **options)
         contexts.append(context)
         tab = context.new_page()
         tab.on("console", lambda message: said.append(message.text))

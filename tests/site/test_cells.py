@@ -4,6 +4,7 @@ import csv
 import json
 import re
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from lumitip_fab.checks.readers.kicad_board import Part, read_board
 from lumitip_fab.cli import main
 from lumitip_fab.site.folder import Folder
 from lumitip_fab.site.page import page
-from site_page import marked, record
+from site_page import Opened, marked, record
 
 pytestmark = pytest.mark.slow
 
@@ -36,7 +37,7 @@ def embedded(folder: Path) -> dict[str, object]:
 
 
 @pytest.mark.parametrize("panel", PANELS)
-def test_a_click_in_any_panel_marks_the_cell_in_all(opened, panel: str) -> None:  # type: ignore[no-untyped-def]
+def test_a_click_in_any_panel_marks_the_cell_in_all(opened: Opened, panel: str) -> None:
     tab = opened()
     tab.locator(f'#{panel} [data-cell="17"]').first.click()
     for other in PANELS:
@@ -46,7 +47,7 @@ def test_a_click_in_any_panel_marks_the_cell_in_all(opened, panel: str) -> None:
     assert int(tab.locator("#number").input_value()) == 17
 
 
-def test_its_copper_leads_there_too(opened, site: Path) -> None:  # type: ignore[no-untyped-def]
+def test_its_copper_leads_there_too(opened: Opened, site: Path) -> None:
     led = _part(site, "emitter", "D18")
     tab = opened()
     tab.evaluate(
@@ -61,7 +62,7 @@ def test_its_copper_leads_there_too(opened, site: Path) -> None:  # type: ignore
     assert f"breakout:{line}" in beyond
 
 
-def test_the_place_in_the_address_is_a_cell(opened) -> None:  # type: ignore[no-untyped-def]
+def test_the_place_in_the_address_is_a_cell(opened: Opened) -> None:
     tab = opened("#cell-17")
     assert marked(tab, "board-emitter") == [17]
     tab.evaluate("location.hash = '#cell-3'")
@@ -70,7 +71,7 @@ def test_the_place_in_the_address_is_a_cell(opened) -> None:  # type: ignore[no-
     assert marked(opened("#cell-99"), "view") == marked(opened(), "view")
 
 
-def test_keys_go_from_cell_to_cell(opened) -> None:  # type: ignore[no-untyped-def]
+def test_keys_go_from_cell_to_cell(opened: Opened) -> None:
     tab = opened("#cell-16")
     tab.locator('#view [data-cell="16"]').focus()
     tab.keyboard.press("ArrowDown")
@@ -116,7 +117,7 @@ def test_every_record_is_that_of_the_files(site: Path) -> None:
         assert of_page["faults"] == []
 
 
-def test_wires_and_shared_parts_are_marked(opened, site: Path) -> None:  # type: ignore[no-untyped-def]
+def test_wires_and_shared_parts_are_marked(opened: Opened, site: Path) -> None:
     with (site / "wiring/cables.csv").open(encoding="utf-8", newline="") as file:
         cables = list(csv.DictReader(file))
     line = Layout.load(site / "layout.json").adc_pin[17]
@@ -130,7 +131,7 @@ def test_wires_and_shared_parts_are_marked(opened, site: Path) -> None:  # type:
     assert "J1." in record(tab)["Breakout"]
 
 
-def test_firmware_that_disagrees_is_named(edited: Path, opened) -> None:  # type: ignore[no-untyped-def]
+def test_firmware_that_disagrees_is_named(edited: Path, opened: Opened) -> None:
     _replace(edited / "firmware/layout.h", "{\n    4, 2, 6,", "{\n    4, 3, 6,")
     assert main(["page", "--quiet", "--out", str(edited)]) == 0
     tab = opened("#cell-1", edited)
@@ -139,7 +140,7 @@ def test_firmware_that_disagrees_is_named(edited: Path, opened) -> None:  # type
     assert tab.locator("#faults").text_content() == ""
 
 
-def test_copper_that_disagrees_is_named(edited: Path, opened) -> None:  # type: ignore[no-untyped-def]
+def test_copper_that_disagrees_is_named(edited: Path, opened: Opened) -> None:
     path = edited / "boards/receiver/receiver.kicad_pcb"
     blocks = path.read_text(encoding="utf-8").split("(footprint ")
     at = next(n for n, block in enumerate(blocks) if 'reference "U1"' in block)
@@ -152,7 +153,9 @@ def test_copper_that_disagrees_is_named(edited: Path, opened) -> None:  # type: 
 
 
 @pytest.mark.parametrize("preset", ["flex", "integrated"])
-def test_cells_of_other_designs_are_followed(built, opened, tmp_path: Path, preset: str) -> None:  # type: ignore[no-untyped-def]
+def test_cells_of_other_designs_are_followed(
+    built: Callable[[str], Path], opened: Opened, tmp_path: Path, preset: str
+) -> None:
     folder = Path(shutil.copytree(built(preset), tmp_path / preset))
     assert main(["page", "--quiet", "--out", str(folder)]) == 0
     tab = opened("#cell-5", folder)

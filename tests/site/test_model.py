@@ -11,7 +11,7 @@ from playwright.sync_api import Page
 from lumitip_fab.checks.readers.scene import read_scene
 from lumitip_fab.checks.readers.vertices import corners_mm
 from lumitip_fab.site.library import three_js
-from site_page import marked
+from site_page import Opened, marked
 
 pytestmark = pytest.mark.slow
 
@@ -46,7 +46,7 @@ def orange(pixels: np.ndarray) -> np.ndarray:
     return np.argwhere((red > 200) & (abs(green - 90) < 45) & (blue < 70))
 
 
-def test_every_body_of_the_file_is_drawn_in_its_place(opened, site: Path) -> None:  # type: ignore[no-untyped-def]
+def test_every_body_of_the_file_is_drawn_in_its_place(opened: Opened, site: Path) -> None:
     scene = read_scene(site / "assembly/system.glb")
     tab = opened("", color_scheme="light")
     middles = tab.evaluate(
@@ -60,7 +60,7 @@ def test_every_body_of_the_file_is_drawn_in_its_place(opened, site: Path) -> Non
         assert np.abs(np.array(middle) - wanted).max() < 0.8, name
 
 
-def test_parts_go_on_and_off_and_apart(opened) -> None:  # type: ignore[no-untyped-def]
+def test_parts_go_on_and_off_and_apart(opened: Opened) -> None:
     tab = opened("#cell-17", color_scheme="light", viewport={"width": 1440, "height": 900})
     first = seen(tab)
     assert 0.03 < (abs(first - first[2, 2]) > 30).any(axis=2).mean() < 0.6
@@ -81,7 +81,7 @@ def test_parts_go_on_and_off_and_apart(opened) -> None:  # type: ignore[no-untyp
     assert differ(first, seen(tab)) < 0.001
 
 
-def test_the_whole_system_and_back(opened) -> None:  # type: ignore[no-untyped-def]
+def test_the_whole_system_and_back(opened: Opened) -> None:
     tab = opened()
     assert not any(name.startswith(("gripper", "flange")) for name in bodies(tab))
     tab.locator("#look-all").click()
@@ -90,7 +90,7 @@ def test_the_whole_system_and_back(opened) -> None:  # type: ignore[no-untyped-d
     assert not any(name.startswith(("gripper", "flange")) for name in bodies(tab))
 
 
-def test_a_cell_is_marked_and_followed_in_3d(opened) -> None:  # type: ignore[no-untyped-def]
+def test_a_cell_is_marked_and_followed_in_3d(opened: Opened) -> None:
     tab = opened("#cell-17", color_scheme="light", viewport={"width": 1440, "height": 900})
     tab.locator("#look-receiver").click()
     for cell in (17, 0):
@@ -104,7 +104,7 @@ def test_a_cell_is_marked_and_followed_in_3d(opened) -> None:  # type: ignore[no
         assert np.hypot(*(found - (y - box["y"], x - box["x"])).T).min() < 6
 
 
-def test_a_click_on_a_device_chooses_its_cell(opened) -> None:  # type: ignore[no-untyped-def]
+def test_a_click_on_a_device_chooses_its_cell(opened: Opened) -> None:
     tab = opened("#cell-0", viewport={"width": 1440, "height": 900})
     tab.locator("#look-receiver").click()
     tab.locator("#canvas").scroll_into_view_if_needed()
@@ -115,7 +115,7 @@ def test_a_click_on_a_device_chooses_its_cell(opened) -> None:  # type: ignore[n
         assert str(tab.locator("#hit").text_content()).startswith("receiver.")
 
 
-def test_keys_and_the_mouse_turn_it(opened) -> None:  # type: ignore[no-untyped-def]
+def test_keys_and_the_mouse_turn_it(opened: Opened) -> None:
     tab = opened("", color_scheme="light")
     canvas = tab.locator("#canvas canvas")
     canvas.focus()
@@ -141,7 +141,7 @@ def on_bed(tab: Page) -> np.ndarray:
     return np.asarray(Image.open(BytesIO(tab.locator("#bed").screenshot())).convert("RGB"), int)
 
 
-def test_every_print_lies_on_the_bed_as_in_its_file(opened, site: Path) -> None:  # type: ignore[no-untyped-def]
+def test_every_print_lies_on_the_bed_as_in_its_file(opened: Opened, site: Path) -> None:
     tab = opened("", color_scheme="light")
     tab.locator("#bed").scroll_into_view_if_needed()
     tab.wait_for_selector("#bed canvas")
@@ -165,7 +165,7 @@ def test_every_print_lies_on_the_bed_as_in_its_file(opened, site: Path) -> None:
     assert differ(first, on_bed(tab)) > 0.02
 
 
-def test_the_thinnest_wall_is_marked_in_its_place(opened) -> None:  # type: ignore[no-untyped-def]
+def test_the_thinnest_wall_is_marked_in_its_place(opened: Opened) -> None:
     tab = opened("", color_scheme="light")
     tab.locator("#query").fill("holder.min_wall")
     note = str(tab.locator("#check-table tbody td").nth(6).text_content())
@@ -179,7 +179,7 @@ def test_the_thinnest_wall_is_marked_in_its_place(opened) -> None:  # type: igno
     assert len(orange(on_bed(tab))) == 0
 
 
-def test_a_line_of_a_table_is_shown_in_3d(opened) -> None:  # type: ignore[no-untyped-def]
+def test_a_line_of_a_table_is_shown_in_3d(opened: Opened) -> None:
     tab = opened("", color_scheme="light")
     tab.locator("#bill").get_by_role("button", name="Show holder/holder.stl").click()
     assert "holder.tray" in bodies(tab)

@@ -16,6 +16,7 @@ from lumitip_fab.checks.manifest import measure
 from lumitip_fab.cli import main
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.diff.folder import read_folder
+from site_page import Opened
 
 pytestmark = pytest.mark.slow
 
@@ -32,7 +33,7 @@ def axe() -> str:
 
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_everyone_can_read_it(opened, size: str, scheme: str) -> None:  # type: ignore[no-untyped-def]
+def test_everyone_can_read_it(opened: Opened, size: str, scheme: str) -> None:
     tab = opened("#cell-17", viewport=SIZES[size], color_scheme=scheme)
     assert tab.evaluate("document.documentElement.scrollWidth") <= SIZES[size]["width"]
     tab.evaluate(axe())
@@ -59,7 +60,7 @@ def test_every_link_leads_to_a_file(site: Path) -> None:
     assert {link[1:] for link in links if link.startswith("#")} <= ids
 
 
-def test_every_check_has_its_value_limit_and_margin(opened, site: Path) -> None:  # type: ignore[no-untyped-def]
+def test_every_check_has_its_value_limit_and_margin(opened: Opened, site: Path) -> None:
     report = json.loads((site / "checks.json").read_text(encoding="utf-8"))
     tab = opened()
     tab.locator("#more").click()
@@ -80,7 +81,7 @@ def test_every_check_has_its_value_limit_and_margin(opened, site: Path) -> None:
     assert shares == sorted(shares)
 
 
-def test_checks_are_filtered_and_sorted(opened) -> None:  # type: ignore[no-untyped-def]
+def test_checks_are_filtered_and_sorted(opened: Opened) -> None:
     tab = opened()
     tab.locator("#query").fill("HOLDER.grip stl")
     names = tab.locator("#check-table tbody td:first-child").all_text_contents()
@@ -98,7 +99,7 @@ def test_checks_are_filtered_and_sorted(opened) -> None:  # type: ignore[no-unty
     assert tab.locator("#check-table th").first.get_attribute("aria-sort") == "descending"
 
 
-def test_a_failed_check_is_first(edited: Path, opened) -> None:  # type: ignore[no-untyped-def]
+def test_a_failed_check_is_first(edited: Path, opened: Opened) -> None:
     report = json.loads((edited / "checks.json").read_text(encoding="utf-8"))
     entry = next(e for e in report if e["check"] == "holder.grip")
     entry |= {"measured": 0.1, "margin": -0.15, "passed": False}
@@ -110,7 +111,7 @@ def test_a_failed_check_is_first(edited: Path, opened) -> None:  # type: ignore[
     assert first == "holder.grip fails"
 
 
-def test_a_row_shows_its_parts_and_goes_back(opened) -> None:  # type: ignore[no-untyped-def]
+def test_a_row_shows_its_parts_and_goes_back(opened: Opened) -> None:
     tab = opened()
     button = tab.get_by_role("button", name="Show circuit 74HC4051PW")
     button.click()
@@ -123,7 +124,7 @@ def test_a_row_shows_its_parts_and_goes_back(opened) -> None:  # type: ignore[no
     assert not tab.locator("#shown").is_visible()
 
 
-def test_every_line_of_the_bill_and_every_print_is_there(opened, site: Path) -> None:  # type: ignore[no-untyped-def]
+def test_every_line_of_the_bill_and_every_print_is_there(opened: Opened, site: Path) -> None:
     tab = opened()
     with (site / "bom.csv").open(encoding="utf-8", newline="") as file:
         bill = list(csv.DictReader(file))

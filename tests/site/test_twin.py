@@ -14,13 +14,12 @@ from lumitip.twin import Cable, Corner, HalfPlane, Model, Thing, Twin
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from page_colours import ramp
-from site_page import marked
+from site_page import Opened, marked
 
 pytestmark = pytest.mark.slow
 
 COUNT = 1.0
 MOST_MS = 8.0
-Opened = Callable[..., Page]
 VALUES = """([{x_mm, y_mm, model}, shapes]) => {
     const twin = new Twin({x_mm, y_mm, model});
     return shapes.map(shape => twin.values(shape));
