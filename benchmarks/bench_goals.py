@@ -1,9 +1,10 @@
 """The design that a search by goals found, against the published sensor, under wrong optics.
 
-Both have the same cells, cost and LED current. The estimator expects each design's drawing; the
-fingertips differ from it. First frames are of the twin with wrong optics, as the search's own
-confirmation has them; then of the second optical model, which the search never saw
-(`second_light`), with holes and depths of each design.
+No cell, cost or LED current may be added. The estimator expects each design's drawing; the
+fingertips differ from it. Edges and cables of 3 mm at a gap of 3 mm: first on frames of the twin
+with wrong optics, as `lumitip-fab explore` has them, then on those of the second optical model,
+which the search never saw (`second_light`), with holes and depths of each design. A gross error
+counts as 2 mm or 10 degrees.
 
 Run by `make bench`; exits 1 if a goal is missed. Arguments: number of poses, number of fingertips
 of the second model.
@@ -19,8 +20,8 @@ from lumitip.estimation import PoseEstimator
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip_fab import derived
-from lumitip_fab.explore.accuracy import Grasp, Sample, Trials, rms
-from poses import estimated, gross, misses
+from lumitip_fab.explore.accuracy import MOST_DEG, MOST_MM, Grasp, Sample, Trials, gross, rms
+from poses import estimated, misses
 from second_bench import fingers, trials
 from second_light import Light
 from second_tips import Tips, drawn
@@ -57,7 +58,8 @@ def of_second_model(
     ]
     method = estimated(PoseEstimator(layout).prepare(*KINDS))
     pairs = fingers(found, SEED, 0.0)
-    return {kind: misses(method, trials(pairs, kind, poses, SEED), kind) for kind in KINDS}
+    missed = {kind: misses(method, trials(pairs, kind, poses, SEED), kind) for kind in KINDS}
+    return {kind: np.minimum(rows, (MOST_MM, MOST_DEG)) for kind, rows in missed.items()}
 
 
 def main(poses: int, count: int) -> int:
@@ -78,17 +80,12 @@ def main(poses: int, count: int) -> int:
         print(f"  {'':<24}{'rms mm':>8}{'deg':>8}{'gross %':>9}")
         for name, of in errors.items():
             for kind, rows in of.items():
-                wild = gross(rows)
-                kept = rows[~wild]
                 print(
-                    f"  {name + ', ' + kind:<24}{rms(kept[:, 0]):>8.3f}{rms(kept[:, 1]):>8.2f}"
-                    f"{100.0 * wild.mean():>9.1f}",
+                    f"  {name + ', ' + kind:<24}{rms(rows[:, 0]):>8.3f}{rms(rows[:, 1]):>8.2f}"
+                    f"{100.0 * gross(rows).mean():>9.1f}",
                     flush=True,
                 )
-        before, after = (
-            rms(np.minimum(np.concatenate(list(errors[name].values()))[:, 0], 2.0))
-            for name in DESIGNS
-        )
+        before, after = (rms(np.concatenate(list(errors[name].values()))[:, 0]) for name in DESIGNS)
         lower = 100.0 * (1.0 - after / before)
         goals.at_least(f"{model}: position error lower by", lower, LOWER_PERCENT, "%")
     one, other = designs.values()

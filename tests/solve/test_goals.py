@@ -51,6 +51,12 @@ def test_the_example_is_valid() -> None:
 
 
 FAULTS = {
+    ("edge_mm = 0.1", "edge_mm = 1.5"): (3, "less than 1 is allowed"),
+    ("edge_mm = 0.1", "gaps_mm = [2.0]"): (2, "without an error"),
+    ("edge_mm = 0.1", "cable_mm = 0.1\ngaps_mm = [2.0]"): (2, "fits no gap"),
+    ("[5, 6.0]", "[true, 6.0]"): (11, "vary.grid.pitch_mm"),
+    ("[5, 6.0]", f"[1{'0' * 400}, 6.0]"): (11, "vary.grid.pitch_mm"),
+    ("from = 2.0", "from = true"): (9, "vary.mask.hole_mm"),
     ("edge_mm = 0.1", "edge_mm = -1"): (3, "goals.edge_mm is -1; more than 0 is needed"),
     ("edge_mm = 0.1", "edges = 0.1"): (3, "goals.edges"),
     ("silicone_mm = 2.0", "silicone_mm = -2"): (7, "fixed.stack.silicone_mm is -2"),

@@ -12,7 +12,7 @@ from lumitip.twin import Model, Twin
 from lumitip_fab import derived
 from lumitip_fab.explore.accuracy import Grasp, Sample, Trials, rms
 from lumitip_fab.solve import information
-from lumitip_fab.solve.information import Grasps, expected, lines
+from lumitip_fab.solve.information import Grasps, expected, lines, slope
 
 ONE = Grasps((3.0,), (3.0,))
 
@@ -46,7 +46,7 @@ def test_known_optics_and_gains_leave_the_bound_of_the_noise(
     for name in ("GAIN_SD", "_LIGHT_SD", "_CLEAR_SD"):
         monkeypatch.setattr(information, name, 0.0)
     monkeypatch.setattr(information, "OPTICS_SD", dict.fromkeys(information.OPTICS_SD, 1e-9))
-    monkeypatch.setattr(information, "_POSE_SD", (1e3, 1e-6))
+    monkeypatch.setattr(information, "POSE_SD", (1e3, 1e-6))
     own = expected(layout, Grasps((3.0,), (), 6)).edges[:, 0]
     twin, step_mm = Twin(layout, Model.from_layout(layout)), 0.05
     offsets_mm, angles_deg = lines(layout, 6)
@@ -83,6 +83,15 @@ def test_a_dim_finger_is_noisier_and_a_saturated_one_sees_less(layout: Layout) -
     )
     assert dim > 1.1 * usual
     assert bright > 1.1 * usual
+
+
+def test_the_slope_at_the_ends_is_that_inside(layout: Layout) -> None:
+    """Values are clipped beyond no light and full light; a difference across an end halves."""
+    twin = Twin(layout, Model.from_layout(layout))
+    inside = [slope(twin, np.full(len(layout), light)) for light in (0.01, 0.99)]
+    ends = [slope(twin, np.full(len(layout), light)) for light in (0.0, 1.0)]
+    assert ends[0] == pytest.approx(inside[0], rel=0.02)
+    assert ends[1] == pytest.approx(inside[1], rel=0.15)
 
 
 def test_cables_thicker_than_the_gap_are_left_out(layout: Layout) -> None:

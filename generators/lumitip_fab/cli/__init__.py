@@ -68,7 +68,7 @@ def _print_rejection(options: argparse.Namespace, error: "InputError") -> None:
         problems = [vars(p) for p in error.problems]
         print(json.dumps({"problems": problems, "remedies": remedies[1:]}, indent=1))
     print(error, *remedies, sep="\n", file=sys.stderr)
-    if plan.complete:
+    if plan.complete and hasattr(options, "file"):
         print(f"lumitip-fab fix {options.file} writes them.", file=sys.stderr)
 
 

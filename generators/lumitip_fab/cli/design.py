@@ -11,7 +11,7 @@ from lumitip_fab.checks.run import run_checks
 from lumitip_fab.cli.build import build
 from lumitip_fab.cli.screen import ERR, FAILED, OUT
 from lumitip_fab.config.load import Input
-from lumitip_fab.errors import InputError, Problem
+from lumitip_fab.errors import BuildError, InputError, Problem
 from lumitip_fab.explore.accuracy import Sample
 from lumitip_fab.solve import files
 from lumitip_fab.solve.confirm import EVIDENCE
@@ -60,7 +60,11 @@ def _require_in_range(options: argparse.Namespace) -> None:
 
 def _fails(folder: Path, silent: bool) -> bool:
     """Build a point and check it; whether a check fails."""
-    build(folder.with_suffix(".toml"), folder)
+    try:
+        build(folder.with_suffix(".toml"), folder)
+    except (BuildError, InputError) as error:
+        ERR.print(f"{folder}: not built: {error}", soft_wrap=True)
+        return True
     outcome = run_checks(folder)
     if not silent:
         failed = ", ".join(sorted({m.check for m in outcome.failed}))
@@ -83,7 +87,7 @@ def print_study(found: Study, console: Console) -> None:
     for point in found.points:
         values, figures = dict(point.judged.changes), point.judged.figures
         errors = (
-            f"{figures[name]:.3g} / {point.confirmed[name]:.3g}" if name in point.confirmed else ""
+            f"{figures[name]:.3g} / {point.confirmed[name]:.3g}" if name in figures else ""
             for name in ("edge_mm", "edge_deg", "cable_mm", "cable_deg")
         )
         table.add_row(
@@ -95,9 +99,9 @@ def print_study(found: Study, console: Console) -> None:
         )
     console.print(table)
     console.print(
-        f"goals: edge {targets.edge_mm:g} mm, {targets.edge_deg:g}°; cable {targets.cable_mm:g} mm,"
-        f" {targets.cable_deg:g}°; gaps {_listed(targets.gaps_mm)} mm, "
-        f"cables {_listed(targets.cables_mm)} mm"
+        "goals: "
+        + ", ".join(f"{name} {goal:g}" for name, goal in targets.errors.items())
+        + f"; gaps {_listed(targets.gaps_mm)} mm, cables {_listed(targets.cables_mm)} mm"
     )
     if nearest := found.nearest:
         over = max(excesses(nearest.figures, found.task.limits))

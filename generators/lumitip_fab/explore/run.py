@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from lumitip_fab.catalogue.ordering import Prices
 from lumitip_fab.config.load import Input, load
 from lumitip_fab.config.parts import NAMED, NONE
 from lumitip_fab.errors import InputError, Problem
@@ -83,7 +82,7 @@ def explore(
     config = load(file)
     prices = config.catalogue.prices
     asked = axes(config, texts, points)
-    _check(config, asked, prices, keep_size)
+    _check(config, asked, keep_size)
     jobs = [
         Job.of(changed(config, changes, keep_size), changes, prices, sample)
         for changes in combinations(asked)
@@ -103,20 +102,25 @@ def explore(
     return Study(asked, designs, prices.currency, len(missing))
 
 
-def _check(config: Input, asked: Sequence[Axis], prices: Prices, keep_size: bool) -> None:
+def _check(config: Input, asked: Sequence[Axis], keep_size: bool) -> None:
     """Refuse what no design could be judged by."""
+    faults = without_price(config, asked)
+    if keep_size and any(axis.field == "grid.columns" for axis in asked):
+        conflict = "and --keep-size exclude each other: --keep-size counts the columns itself"
+        faults.append(Problem("--vary", 0, "grid.columns", conflict))
+    if faults:
+        raise InputError(faults)
+
+
+def without_price(config: Input, asked: Sequence[Axis]) -> list[Problem]:
+    """A fault for each part without a price that a design may use."""
     varied = {axis.field: axis.values for axis in asked}
     parts = {field: part for field, part in NAMED.items() if part in _PRICED}
     names: set[str] = set()
     for field, part in parts.items():
         chosen = getattr(config.catalogue, part) if field in config.automatic else ()
         names |= set(varied.get(field, chosen or (config.value(field),)))
-    faults = unpriced(config, prices, names - {NONE})
-    if keep_size and "grid.columns" in varied:
-        conflict = "and --keep-size exclude each other: --keep-size counts the columns itself"
-        faults.append(Problem("--vary", 0, "grid.columns", conflict))
-    if faults:
-        raise InputError(faults)
+    return unpriced(config, config.catalogue.prices, names - {NONE})
 
 
 def _found(job: Job, record: Record) -> Found:

@@ -39,7 +39,7 @@ def trials(layout: Layout, targets: Targets, exposure: float, sample: Sample) ->
     Args:
         layout: the cells.
         targets: gaps and cables.
-        exposure: of the design, see `judge.light`.
+        exposure: of the design, see `judge.drive`.
         sample: fingertips and poses of each trial.
     """
     gain = Model.gain * exposure
@@ -73,7 +73,7 @@ def figures(found: list[tuple[str, Floats]], targets: Targets) -> dict[str, floa
     }
     every = np.concatenate(list(missed.values()))
     return {
-        "error": max(value / getattr(targets, name) for name, value in errors.items()),
+        "error": max(errors[name] / goal for name, goal in targets.errors.items()),
         **errors,
         "gross_percent": 100.0 * float(gross(every).mean()),
     }

@@ -16,6 +16,7 @@ from lumitip_fab.pipeline.manifest import write_file
 from lumitip_fab.solve.goals import Task
 from lumitip_fab.solve.judge import FIGURES
 from lumitip_fab.solve.study import Point, Study, summary
+from lumitip_fab.text import LONGEST
 
 _DOTS_PER_INCH = 150
 _BASE, _BEST = "#888888", "#1f6fb2"
@@ -38,6 +39,8 @@ def write(found: Study, folder: Path) -> list[Path]:
     files |= pictures(found)
     for name, data in files.items():
         write_file(folder / name, data)
+    for old in set(folder.glob("point-*.toml")) - {folder / name for name in files}:
+        old.unlink()
     return [folder / name for name in files]
 
 
@@ -46,12 +49,12 @@ def parameter_file(task: Task, point: Point) -> str:
     table = written(task.base)
     for field, value in _values(task, point.judged.changes):
         section, key = field.split(".")
-        table[section][key] = value
-    table["name"] = f"{table['name']} {point.name}"
-    changes = ", ".join(f"{field} = {value}" for field, value in point.judged.changes)
+        table.setdefault(section, {})[key] = value
+    table["name"] = f"{table['name'][: LONGEST - len(point.name) - 1].strip()} {point.name}"
+    changes = ", ".join(f"{f} = {v}" for f, v in _values(task, point.judged.changes))
     head = (
         f"# {point.name} of a search with lumitip-fab design: {changes}.\n"
-        "# All other values are those of the base; study.json has the figures.\n\n"
+        "# All other values are those of the file that was varied; study.json has the figures.\n\n"
     )
     return head + tomli_w.dumps(table)
 
@@ -80,7 +83,7 @@ def _front(found: Study) -> bytes:
     for one in found.search.front:
         values = dict(one.changes)
         columns = " ".join(map(str, one.columns))
-        figures = (one.figures[name] for name in FIGURES)
+        figures = (one.figures.get(name, "") for name in FIGURES)
         rows.writerow([*(values[field] for field in fields), columns, *figures])
     return text.getvalue().encode()
 

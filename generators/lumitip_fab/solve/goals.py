@@ -13,19 +13,22 @@ from lumitip_fab.config.load import Input, load
 from lumitip_fab.config.messages import brief, problems_of, shown_path, unknown_name
 from lumitip_fab.config.source import Source, flat, read_toml
 from lumitip_fab.errors import InputError, Problem
+from lumitip_fab.explore.run import without_price
 from lumitip_fab.explore.vary import Axis, Changes, changed, not_allowed
-from lumitip_fab.solve.information import Grasps
+from lumitip_fab.solve.information import POSE_SD, Grasps
 
 KEEP_SIZE = "keep_size"
 """Spec of `grid.columns`: they follow the pitch, so that the grid keeps its size."""
 COLUMNS = "grid.columns"
+MOST = 1e9
 MOST_VALUES = 1000
 """Values of one parameter."""
 WITHOUT_LIGHT = ("emitter.led", "receiver.photodetector")
 """Parts whose light the twin does not know; what they do to the accuracy is unknown."""
 _DECIMALS = 6
 _RANGE = "{ from = A, to = B, step = C }"
-_Error = Annotated[float, Field(gt=0, le=10)]
+_Millimetres = Annotated[float, Field(gt=0, lt=POSE_SD[0])]
+_Degrees = Annotated[float, Field(gt=0, lt=POSE_SD[1])]
 _Gaps = Annotated[tuple[Annotated[float, Field(ge=1, le=10)], ...], Field(min_length=1)]
 _Cables = tuple[Annotated[float, Field(ge=0.5, le=20)], ...]
 
@@ -33,18 +36,36 @@ _Cables = tuple[Annotated[float, Field(ge=0.5, le=20)], ...]
 class Targets(Strict):
     """Errors to reach, rms over all grasps, and the grasps."""
 
-    edge_mm: _Error
+    edge_mm: _Millimetres | None = None
     """Position of an edge (mm)."""
-    edge_deg: _Error = 10.0
+    edge_deg: _Degrees | None = None
     """Its angle (degrees)."""
-    cable_mm: _Error = 10.0
+    cable_mm: _Millimetres | None = None
     """Position of a cable (mm)."""
-    cable_deg: _Error = 10.0
+    cable_deg: _Degrees | None = None
     """Its angle (degrees)."""
     gaps_mm: _Gaps = (3.0,)
     """Gaps from skin to skin (mm)."""
     cables_mm: _Cables = (3.0,)
     """Diameters of cables (mm); a gap is gripped with those that are not thicker."""
+
+    @property
+    def errors(self) -> dict[str, float]:
+        """The goals that are set, by figure."""
+        every = {n: getattr(self, n) for n in ("edge_mm", "edge_deg", "cable_mm", "cable_deg")}
+        return {name: value for name, value in every.items() if value is not None}
+
+    @model_validator(mode="after")
+    def _every_goal_can_be_tried(self) -> "Targets":
+        if not self.errors:
+            raise ValueError("goals is without an error; write at least edge_mm or cable_mm")
+        thick = [d for d in self.cables_mm if d > max(self.gaps_mm)]
+        if thick and {"cable_mm", "cable_deg"} & self.errors.keys():
+            raise ValueError(
+                f"goals.cables_mm has {thick[0]:g} mm, which fits no gap of goals.gaps_mm; add a "
+                "gap or remove it"
+            )
+        return self
 
 
 class Limits(Strict):
@@ -128,8 +149,11 @@ def read_goals(path: Path) -> Task:
     ]
     if faults:
         raise InputError(faults)
+    task_base = changed(base, fixed)
+    if unpriced := without_price(task_base, axes):
+        raise InputError(unpriced)
     keep_size = file.vary.get("grid", {}).get("columns") == KEEP_SIZE
-    return Task(changed(base, fixed), fixed, file.goals, file.limits, axes, keep_size)
+    return Task(task_base, fixed, file.goals, file.limits, axes, keep_size)
 
 
 def _tuples(value: Any) -> Any:
@@ -206,7 +230,7 @@ def _values(spec: Any) -> tuple[Any, ...] | str:
     if not isinstance(spec, dict) or spec.keys() != {"from", "to", "step"}:
         return f"is {brief(spec)}; a list of values or {_RANGE} is needed"
     low, high, step = (spec[name] for name in ("from", "to", "step"))
-    if not all(isinstance(v, int | float) and math.isfinite(v) for v in (low, high, step)):
+    if not all(_is_number(v) for v in (low, high, step)):
         return f"is {brief(spec)}; {_RANGE} is needed in numbers"
     if not low < high or not step > 0 or (high - low) / step >= MOST_VALUES:
         return (
@@ -214,12 +238,17 @@ def _values(spec: Any) -> tuple[Any, ...] | str:
             f"{MOST_VALUES} values"
         )
     count = math.floor((high - low) / step + 1e-9) + 1
-    return tuple(round(low + n * step, _DECIMALS) for n in range(count))
+    return tuple(dict.fromkeys(round(low + n * step, _DECIMALS) for n in range(count)))
 
 
 def _as_numbers_of(base: Input, field: str, values: tuple[Any, ...]) -> tuple[Any, ...]:
     """Numbers in the type of the field, so that 4 and 4.0 are one value."""
     value = base.value(field)
     if isinstance(value, float):
-        return tuple(float(v) if isinstance(v, int) else v for v in values)
+        return tuple(float(v) if isinstance(v, int) and _is_number(v) else v for v in values)
     return values
+
+
+def _is_number(value: Any) -> bool:
+    """Whether a value of TOML is a finite number of a size that a design can have."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < MOST

@@ -29,7 +29,8 @@ deviations that `lumitip-fab explore` draws."""
 _STEPS = {"gap_mm": 0.1, "alpha": 0.05, "detector_exponent": 0.15, "hole_mm": 0.02}
 _LIGHT_SD, _CLEAR_SD = 0.1, 0.3
 _WIDTH_SD = 0.1  # of a cable's diameter, relative to it
-_POSE_SD = (1.0, 5.0)  # of a line that no cell sees: offset (mm) and angle (degrees)
+POSE_SD = (1.0, 5.0)
+"""Of a line that no cell sees: offset (mm) and angle (degrees); no expected error is larger."""
 _STEP_MM, _STEP_DEG, _STEP_LIGHT = 0.05, 0.3, 0.01
 _REACH = 0.35  # of the grid's smaller extent: how far from its middle lines lie
 
@@ -115,8 +116,8 @@ class _Gap:
         light = 1.0 - self._taken(self.twin, width_mm)
         by_light = self._by_light(light)
         columns = [
-            self._by_pose(width_mm, _STEP_MM, 0.0) * _POSE_SD[0] / _STEP_MM,
-            self._by_pose(width_mm, 0.0, _STEP_DEG) * _POSE_SD[1] / _STEP_DEG,
+            self._by_pose(width_mm, _STEP_MM, 0.0) * POSE_SD[0] / _STEP_MM,
+            self._by_pose(width_mm, 0.0, _STEP_DEG) * POSE_SD[1] / _STEP_DEG,
             by_light * light * _LIGHT_SD,
             *((self._values(width_mm, twin) - here) / by for twin, by in self.changed),
         ]
@@ -131,7 +132,7 @@ class _Gap:
         # Every column is scaled by its prior deviation, so the prior is the unit matrix.
         normal = jacobian.transpose(0, 2, 1) @ jacobian + np.eye(len(columns))
         variance = np.linalg.inv(normal)
-        return np.sqrt(np.stack([variance[:, n, n] for n in (0, 1)], axis=1)) * _POSE_SD
+        return np.sqrt(np.stack([variance[:, n, n] for n in (0, 1)], axis=1)) * POSE_SD
 
     def _by_pose(self, width_mm: float | None, step_mm: float, step_deg: float) -> Floats:
         """Half of the change of the values between two poses that differ by two steps."""
@@ -141,8 +142,7 @@ class _Gap:
         return (there - back) / 2.0
 
     def _by_light(self, light: Floats) -> Floats:
-        there, back = (self.twin.calibrated(light + way * _STEP_LIGHT) for way in (0.5, -0.5))
-        return (there - back) / _STEP_LIGHT
+        return slope(self.twin, light)
 
     def _values(
         self,
@@ -167,6 +167,17 @@ class _Gap:
         if width_mm is None:
             return right_of(0.0)
         return right_of(width_mm / 2.0) - right_of(-width_mm / 2.0)
+
+
+def slope(twin: Twin, light: Floats) -> Floats:
+    """Growth of the calibrated values with the share of light, of the shape of `light`.
+
+    At its ends it is that inside: beyond them the values are clipped.
+    """
+    high = np.minimum(light + _STEP_LIGHT / 2.0, 1.0)
+    low = np.maximum(light - _STEP_LIGHT / 2.0, 0.0)
+    rise: Floats = (twin.calibrated(high) - twin.calibrated(low)) / (high - low)
+    return rise
 
 
 def _changed(layout: Layout, model: Model) -> Iterator[tuple[Twin, float]]:

@@ -6,10 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lumitip.errors import LumitipError
-from lumitip.layout import Layout
+from lumitip.estimation.estimator import LEAST_CELLS
 from lumitip.twin import Model
-from lumitip.twin.pairs import Emitter, Pairs
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive import resolve
 from lumitip_fab.design import Design
@@ -22,7 +20,7 @@ from lumitip_fab.solve.goals import Limits, Targets, Task
 from lumitip_fab.solve.information import Grasps, expected
 
 ERRORS = ("edge_mm", "edge_deg", "cable_mm", "cable_deg")
-"""Expected errors, rms over all grasps."""
+"""Expected errors, rms over all grasps; without cables those of edges alone."""
 FIGURES = (
     "error",
     *ERRORS,
@@ -37,7 +35,8 @@ FIGURES = (
 OBJECTIVES = ("error", "cost", "current_ma")
 """Figures of the Pareto front; less is better."""
 _DIGITS = 5
-_MOST_EXPOSURE = 4.0  # beyond it every cell is saturated whatever is gripped
+MOST_EXPOSURE = 1.3
+"""Beyond it free cells saturate, and thin shadows vanish."""
 
 
 @dataclass(frozen=True)
@@ -47,13 +46,13 @@ class Job:
     config: Input
     changes: Changes
     targets: Targets
-    base_light: float
-    """Light of the base, see `light`."""
+    base_drive: float
+    """Of the base, see `drive`."""
     key: str
     """SHA-256 of everything that the result depends on."""
 
     @classmethod
-    def of(cls, task: Task, changes: Changes, base_light: float) -> "Job":
+    def of(cls, task: Task, changes: Changes, base_drive: float) -> "Job":
         """The job of a design of a task."""
         config = task.design(changes)
         inputs = [
@@ -62,12 +61,12 @@ class Job:
             {field: part.model_dump() for field, part in config.parts_by_field().items()},
             config.catalogue.prices.model_dump(),
             task.targets.model_dump(),
-            base_light,
+            base_drive,
             code_hash("explore", "solve"),
             np.__version__,
         ]
         key = hashlib.sha256(canonical(inputs).encode()).hexdigest()
-        return cls(config, changes, task.targets, base_light, key)
+        return cls(config, changes, task.targets, base_drive, key)
 
 
 def judge(job: Job) -> Record:
@@ -77,15 +76,20 @@ def judge(job: Job) -> Record:
     except InputError as error:
         return {"key": job.key, "refused": [p.text for p in error.problems]}
     design, layout = resolved.design, resolved.design.layout
-    exposure = min(light(design) / job.base_light, _MOST_EXPOSURE)
+    exposure = drive(design) / job.base_drive
+    if len(layout) < LEAST_CELLS:
+        text = f"grid.columns has {len(layout)} cells; a pose needs at least {LEAST_CELLS}"
+        return {"key": job.key, "refused": [text]}
+    if exposure > MOST_EXPOSURE:
+        text = (
+            f"LED current times pull-up is {exposure:.2f} times that of the base, which saturates "
+            f"free cells; at most {MOST_EXPOSURE:g} times is judged"
+        )
+        return {"key": job.key, "refused": [text]}
     grasps = Grasps(job.targets.gaps_mm, job.targets.cables_mm)
-    try:
-        errors = expected(layout, grasps, Model.gain * exposure).rms()
-    except LumitipError as error:
-        return {"key": job.key, "refused": [f"grid.columns: {error}"]}
+    errors = expected(layout, grasps, Model.gain * exposure).rms()
     figures = {
-        "error": max(errors[name] / getattr(job.targets, name) for name in errors),
-        **dict.fromkeys(ERRORS, 0.0),
+        "error": max(errors[name] / goal for name, goal in job.targets.errors.items()),
         **errors,
         "exposure": exposure,
         "cells": float(len(layout)),
@@ -94,19 +98,13 @@ def judge(job: Job) -> Record:
         "cost": cost(resolved.config, design, resolved.config.catalogue.prices),
         "current_ma": float(sum(design.wiring.current_ma)),
     }
-    return {"key": job.key, "figures": {name: rounded(figures[name]) for name in FIGURES}}
+    return {"key": job.key, "figures": {n: rounded(figures[n]) for n in FIGURES if n in figures}}
 
 
-def light(design: Design) -> float:
-    """Voltage that the brightest photodetector takes from its pull-up in the empty grasp, in a
-    unit of its own: it compares designs with the same LEDs and photodetectors.
-
-    Light grows with the LED's current, which is assumed to be linear.
-    """
-    layout: Layout = design.layout
-    full = Pairs.of(layout, Emitter(Model.from_layout(layout))).full
-    current_ma = float(np.mean(design.wiring.current_ma))
-    return float(full.max()) * current_ma * layout.optics.pull_up_ohm
+def drive(design: Design) -> float:
+    """Current of an LED times pull-up (mA · ohm): what a design does to the photocurrent's voltage,
+    with the same parts and optics."""
+    return float(np.mean(design.wiring.current_ma)) * design.layout.optics.pull_up_ohm
 
 
 def excesses(figures: dict[str, float], limits: Limits) -> tuple[float, ...]:

@@ -11,13 +11,13 @@ from scipy.stats import qmc
 
 from lumitip.errors import how_to_install
 from lumitip_fab.derive import derive
-from lumitip_fab.errors import BuildError
+from lumitip_fab.errors import BuildError, InputError, Problem
 from lumitip_fab.explore.evaluate import Journal, Record
 from lumitip_fab.explore.pool import pool
 from lumitip_fab.explore.vary import Changes
 from lumitip_fab.pipeline.build import locked
 from lumitip_fab.solve.goals import Task
-from lumitip_fab.solve.judge import OBJECTIVES, Job, excesses, judge, light
+from lumitip_fab.solve.judge import OBJECTIVES, Job, drive, excesses, judge
 
 FEWEST, POPULATION = 8, 24
 """Designs of a generation: of a short search, and of a long one."""
@@ -79,7 +79,7 @@ def search(
     Args:
         task: goals, base and parameters.
         out: folder of the journal.
-        designs: most designs that are judged.
+        designs: that are judged; a last generation is finished.
         seed: of the search.
         scheduler: address of a Dask scheduler; all cores of this machine by default.
         progress: called with how many are done, and of how many at most.
@@ -89,13 +89,17 @@ def search(
         OutputError: if the folder cannot be used.
         BuildError: if workers fail, or pymoo is not installed.
     """
-    base_light = light(derive(task.base))
+    complete = task.designs <= designs
+    if not complete:
+        _require_pymoo()
+    base_drive = drive(derive(task.base))
     with locked(out), Journal(out) as journal, pool(judge, POPULATION, scheduler) as evaluated:
-        judges = _Judges(task, base_light, journal, evaluated)
+        judges = _Judges(task, base_drive, journal, evaluated)
         judges.progress = lambda: progress(min(len(judges.designs), most), most)
         most = min(designs, task.designs)
         base = judges.judged([()])[0]
-        complete = task.designs <= designs
+        if base.refused:
+            raise InputError([Problem("base", 0, "", text) for text in base.refused])
         if complete:
             every = list(itertools.product(*(range(len(axis.values)) for axis in task.axes)))
             for begin in range(0, len(every), POPULATION):
@@ -113,11 +117,11 @@ class _Judges:
     def __init__(
         self,
         task: Task,
-        base_light: float,
+        base_drive: float,
         journal: Journal,
         evaluate: Callable[[Sequence[Job]], Iterator[Record]],
     ) -> None:
-        self._task, self._base_light = task, base_light
+        self._task, self._base_drive = task, base_drive
         self._journal, self._evaluate = journal, evaluate
         self._records: dict[str, Record] = dict(journal.known)
         self.designs: dict[Point, Judged] = {}
@@ -134,13 +138,20 @@ class _Judges:
 
     def judged(self, each: Sequence[Changes]) -> list[Judged]:
         """Designs by their changes."""
-        jobs = [Job.of(self._task, changes, self._base_light) for changes in each]
+        jobs = [Job.of(self._task, changes, self._base_drive) for changes in each]
         missing = {job.key: job for job in jobs if job.key not in self._records}
         for record in self._evaluate(list(missing.values())):
             self._journal.add(record)
             self._records[record["key"]] = record
             self.evaluated += 1
         return [_judged(self._task, job, self._records[job.key]) for job in jobs]
+
+
+def _require_pymoo() -> None:
+    try:
+        import pymoo.core.evaluator  # noqa: F401
+    except ModuleNotFoundError as error:
+        raise BuildError(f"the search needs pymoo: {how_to_install('fab,solve')}") from error
 
 
 def _changes(task: Task, point: Point) -> Changes:
@@ -162,16 +173,14 @@ def _generations(
     task: Task, designs: int, seed: int, judges: Callable[[Sequence[Point]], list[Judged]]
 ) -> Iterator[None]:
     """Generations of NSGA-II; the first is spread evenly over the values."""
-    try:
-        from pymoo.core.evaluator import Evaluator
-        from pymoo.core.mixed import MixedVariableGA
-        from pymoo.core.population import Population
-        from pymoo.core.problem import Problem
-        from pymoo.core.variable import Choice, Integer
-        from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
-        from pymoo.problems.static import StaticProblem
-    except ModuleNotFoundError as error:
-        raise BuildError(f"the search needs pymoo: {how_to_install('fab,solve')}") from error
+    from pymoo.core.evaluator import Evaluator
+    from pymoo.core.mixed import MixedVariableGA
+    from pymoo.core.population import Population
+    from pymoo.core.problem import Problem as Multi
+    from pymoo.core.variable import Choice, Integer
+    from pymoo.operators.survival.rank_and_crowding import RankAndCrowding
+    from pymoo.problems.static import StaticProblem
+
     sizes = [len(axis.values) for axis in task.axes]
     ordered = [_is_number(axis.values[0]) for axis in task.axes]
     names = [str(n) for n in range(len(sizes))]
@@ -179,7 +188,7 @@ def _generations(
         name: Integer(bounds=(0, n - 1)) if is_ordered else Choice(options=list(range(n)))
         for name, n, is_ordered in zip(names, sizes, ordered, strict=True)
     }
-    problem = Problem(vars=variables, n_obj=len(OBJECTIVES), n_ieq_constr=1)
+    problem = Multi(vars=variables, n_obj=len(OBJECTIVES), n_ieq_constr=1)
     size = max(FEWEST, min(POPULATION, designs // 6))
     even = qmc.LatinHypercube(len(sizes), rng=np.random.default_rng(seed)).random(size)
     first = [{n: int(v) for n, v in zip(names, row * sizes, strict=True)} for row in even]

@@ -125,7 +125,10 @@ def _spread(front: Sequence[Judged], count: int) -> list[Judged]:
 def summary(found: Study) -> dict[str, Any]:
     """The study as plain JSON."""
     return {
-        "goals": found.task.targets.model_dump(),
+        "base": found.task.base.sources[0].path.name,
+        "fixed": dict(found.task.fixed),
+        "keep_size": found.task.keep_size,
+        "goals": found.task.targets.model_dump(exclude_none=True),
         "limits": {
             name: value
             for name, value in found.task.limits.model_dump().items()
