@@ -33,6 +33,7 @@ $(DOCS): $(FAB)
 
 outputs: $(FAB) ## build DESIGN into OUT, check it, and write its page
 	@$(BIN)/lumitip-fab build $(DESIGN) --out $(OUT)
+	@rm -f $(OUT)/checks.json $(OUT)/checks.xml
 	@$(CHECK) --memory $(OUT)/.checked.json; checked=$$?; \
 	$(BIN)/lumitip-fab page --out $(OUT) && exit $$checked
 

@@ -12,6 +12,7 @@ import pytest
 from lumitip_fab.cli import main
 from lumitip_fab.cli.build import shortened
 from lumitip_fab.config.schema import schema_text
+from lumitip_fab.pipeline.manifest import content_hash
 
 pytestmark = pytest.mark.slow
 
@@ -95,7 +96,9 @@ def test_check_reads_only_and_reports(
     assert lines[1].endswith(" checks passed")
     assert {f: f.stat().st_mtime_ns for f in outputs.rglob("*")} == before
     suite = ElementTree.parse(xml).getroot()
-    measured = json.loads(report.read_text())
+    record = json.loads(report.read_text())
+    assert record["content_sha256"] == content_hash(outputs)
+    measured = record["measurements"]
     assert int(suite.attrib["tests"]) == len(measured) > 30
     assert suite.attrib["failures"] == "0"
 

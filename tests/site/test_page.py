@@ -8,6 +8,7 @@ import re
 import subprocess
 from html import unescape
 from pathlib import Path
+from typing import Any
 from urllib.parse import unquote
 
 import pytest
@@ -16,6 +17,9 @@ from lumitip_fab.checks.manifest import measure
 from lumitip_fab.cli import main
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.diff.folder import read_folder
+from lumitip_fab.site.checks import check_rows
+from lumitip_fab.site.folder import Folder
+from lumitip_fab.site.targets import Targets
 from site_page import Opened
 
 pytestmark = pytest.mark.slow
@@ -61,7 +65,7 @@ def test_every_link_leads_to_a_file(site: Path) -> None:
 
 
 def test_every_check_has_its_value_limit_and_margin(opened: Opened, site: Path) -> None:
-    report = json.loads((site / "checks.json").read_text(encoding="utf-8"))
+    report = _report(site)["measurements"]
     tab = opened()
     tab.locator("#more").click()
     while tab.locator("#more").is_visible():
@@ -99,16 +103,54 @@ def test_checks_are_filtered_and_sorted(opened: Opened) -> None:
     assert tab.locator("#check-table th").first.get_attribute("aria-sort") == "descending"
 
 
+def _report(folder: Path) -> dict[str, Any]:
+    return dict(json.loads((folder / "checks.json").read_text(encoding="utf-8")))
+
+
+def _change(folder: Path, check: str, **values: object) -> None:
+    """Change a measurement of the report."""
+    report = _report(folder)
+    next(e for e in report["measurements"] if e["check"] == check).update(values)
+    (folder / "checks.json").write_text(json.dumps(report), encoding="utf-8")
+
+
 def test_a_failed_check_is_first(edited: Path, opened: Opened) -> None:
-    report = json.loads((edited / "checks.json").read_text(encoding="utf-8"))
-    entry = next(e for e in report if e["check"] == "holder.grip")
-    entry |= {"measured": 0.1, "margin": -0.15, "passed": False}
-    (edited / "checks.json").write_text(json.dumps(report), encoding="utf-8")
+    _change(edited, "holder.grip", measured=0.1, margin=-0.15, passed=False)
     assert main(["page", "--quiet", "--out", str(edited)]) == 0
     tab = opened("", edited)
     assert "1 of " in str(tab.locator(".answer.bad .big").text_content())
     first = tab.locator("#check-table tbody td").first.text_content()
     assert first == "holder.grip fails"
+
+
+def test_a_check_that_passed_without_a_figure_passes(edited: Path) -> None:
+    """A figure beyond all limits, such as a clearance to nothing, is null in the report."""
+    _change(edited, "holder.grip", measured=None, margin=None)
+    folder = Folder.of(edited)
+    row = next(
+        row for row in check_rows(folder, Targets(folder, ())) if row["check"] == "holder.grip"
+    )
+    assert row["passed"] and row["value"] == "none"
+
+
+def _quality(folder: Path) -> str:
+    """What the head of a page says of the checks."""
+    assert main(["page", "--quiet", "--out", str(folder)]) == 0
+    text = (folder / "index.html").read_text(encoding="utf-8")
+    return re.sub("<[^>]+>", " ", text.partition("How good is it?")[2].partition("</div>")[0])
+
+
+def test_only_a_report_of_these_files_counts(edited: Path) -> None:
+    assert "checks pass" in _quality(edited)
+    header = edited / "firmware/layout.h"
+    text = header.read_text(encoding="utf-8")
+    header.write_text(text + "\n", encoding="utf-8")
+    quality = " ".join(_quality(edited).split())
+    assert quality.startswith("Not checked since the files changed Run make outputs.")
+    header.write_text(text, encoding="utf-8")
+    assert "checks pass" in _quality(edited)
+    (edited / "checks.json").unlink()
+    assert " ".join(_quality(edited).split()).startswith("Not checked Run make outputs.")
 
 
 def test_a_row_shows_its_parts_and_goes_back(opened: Opened) -> None:
@@ -153,25 +195,33 @@ def test_the_page_is_no_part_of_the_build(site: Path) -> None:
 
 
 def test_make_outputs_ends_with_the_page(
-    site: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    edited: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Of a check that fails the page is written too, and `make` fails."""
-    assert main(["page", "--out", str(site)]) == 0
-    assert capsys.readouterr().out.splitlines()[-1] == f"open {site}/index.html in a browser"
+    """Of a check that fails the page is written too, and `make` fails. No report of files that
+    were there before is left."""
+    assert main(["page", "--out", str(edited)]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == f"open {edited}/index.html in a browser"
+    environment = {k: v for k, v in os.environ.items() if k not in {"MAKEFLAGS", "MAKELEVEL"}}
     program = tmp_path / "lumitip-fab"
     program.write_text('#!/bin/sh\necho $1; test "$1" != check || exit $FAKE\n')
     program.chmod(0o755)
+    old = [tmp_path / "out/checks.json", tmp_path / "out/checks.xml"]
+    old[0].parent.mkdir()
+    variables = [f"BIN={tmp_path}", f"FAB={program}", f"OUT={old[0].parent}"]
     for code in (0, 1):
+        for report in old:
+            report.touch()
         made = subprocess.run(
-            ["make", "outputs", f"BIN={tmp_path}", f"FAB={program}", f"OUT={tmp_path}/out"],
+            ["make", "--no-print-directory", "outputs", *variables],
             cwd=Path(__file__).parents[2],
-            env={**os.environ, "FAKE": str(code)},
+            env={**environment, "FAKE": str(code)},
             capture_output=True,
             text=True,
             check=False,
         )
         assert made.stdout.splitlines()[:3] == ["build", "check", "page"]
         assert (made.returncode == 0) == (code == 0)
+        assert not any(report.exists() for report in old)
 
 
 def test_a_folder_that_is_none_is_refused(

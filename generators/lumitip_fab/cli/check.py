@@ -9,7 +9,7 @@ from lumitip_fab.checks.run import MODULES, Memory, as_json, run_checks
 from lumitip_fab.cli import report, summary
 from lumitip_fab.cli.screen import ERR, FAILED, OUT
 from lumitip_fab.errors import OutputError
-from lumitip_fab.pipeline.manifest import PAGE, write_file
+from lumitip_fab.pipeline.manifest import PAGE, content_hash, write_file
 
 
 def run(options: argparse.Namespace) -> int:
@@ -18,8 +18,10 @@ def run(options: argparse.Namespace) -> int:
         reports = [path for path in (options.junit, options.report) if path]
         beside = [*reports, options.out / PAGE]
         memory = Memory(options.memory, options.out, beside) if options.memory else None
+        content = content_hash(options.out)  # before: what changes meanwhile was not checked
         outcome = run_checks(options.out, MODULES, memory, os.cpu_count() or 1)
-    text = json.dumps(as_json(outcome), indent=1) + "\n"
+    record = {"content_sha256": content, "measurements": as_json(outcome)}
+    text = json.dumps(record, indent=1) + "\n"
     for path, data in ((options.junit, report.junit(outcome)), (options.report, text.encode())):
         try:
             if path:

@@ -133,6 +133,13 @@ def write_file(path: Path, data: bytes, mode: int = 0o644) -> None:
         raise
 
 
+def content_hash(out: Path) -> str:
+    """SHA-256 (hex) of an output folder: of its manifest and of every file that this lists."""
+    paths = (NAME, *sorted(read(out).files))
+    lines = (f"{sha256_of(out / path)} {path}\n" for path in paths)
+    return hashlib.sha256("".join(lines).encode()).hexdigest()
+
+
 def sha256_of(path: Path) -> str | None:
     """SHA-256 (hex) of a file; none where it cannot be read."""
     try:

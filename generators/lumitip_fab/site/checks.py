@@ -3,22 +3,24 @@
 import math
 from typing import Any
 
-from lumitip_fab.checks.result import Measurement, relative_margin
-from lumitip_fab.site.folder import Folder
+from lumitip_fab.checks.result import relative_margin
+from lumitip_fab.site.folder import Checked, Folder
 from lumitip_fab.site.targets import Targets
 
 
 def check_rows(folder: Folder, targets: Targets) -> list[dict[str, Any]]:
     """The measurements, those that fail first, then by relative margin."""
-    return [_row(m, targets) for m in sorted(folder.measurements, key=_rank)]
+    return [_row(each, targets) for each in sorted(folder.checked or (), key=_rank)]
 
 
-def _rank(m: Measurement) -> tuple[bool, float, str, str]:
+def _rank(checked: Checked) -> tuple[bool, float, str, str]:
+    m = checked.measurement
     share = relative_margin(m)
-    return m.passed, math.inf if share is None else share, m.check, m.subject
+    return checked.passed, math.inf if share is None else share, m.check, m.subject
 
 
-def _row(m: Measurement, targets: Targets) -> dict[str, Any]:
+def _row(checked: Checked, targets: Targets) -> dict[str, Any]:
+    m, passed = checked.measurement, checked.passed
     share = relative_margin(m)
     return {
         "check": m.check,
@@ -27,8 +29,8 @@ def _row(m: Measurement, targets: Targets) -> dict[str, Any]:
         "limit": m.limit,
         "unit": m.unit,
         "margin": figure(m.margin) if math.isfinite(m.margin) else "",
-        "share": None if share is None else round(max(share, 0.0) if m.passed else share, 4),
-        "passed": m.passed,
+        "share": None if share is None else round(max(share, 0.0) if passed else share, 4),
+        "passed": passed,
         "note": m.note,
         "show": targets.of_measurement(m.subject, m.note),
     }

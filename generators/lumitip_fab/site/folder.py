@@ -23,6 +23,18 @@ _BOUNDS = {"measured": math.nan, "low": -math.inf, "high": math.inf}
 
 
 @dataclass(frozen=True)
+class Checked:
+    """A measurement of the report, and whether the check passed it.
+
+    Figures that are not finite are null in the report, and others are rounded, so that this cannot
+    be found again from the figures.
+    """
+
+    measurement: Measurement
+    passed: bool
+
+
+@dataclass(frozen=True)
 class Folder:
     """An output folder."""
 
@@ -86,21 +98,26 @@ class Folder:
         return read_board(self.out / board_path(name))
 
     @cached_property
-    def measurements(self) -> tuple[Measurement, ...]:
-        """What the checks measured; empty where they have not run.
+    def checked(self) -> tuple[Checked, ...] | None:
+        """What the checks measured in the files as they are now; none where there is no report.
+
+        It is empty if files have changed since they were checked.
 
         Raises:
             OutputError: if the report cannot be read.
         """
         if not (self.out / CHECKS).is_file():
-            return ()
+            return None
         try:
-            return tuple(map(_measurement, json.loads(self.text(CHECKS))))
+            report = json.loads(self.text(CHECKS))
+            checked = tuple(map(_checked, report["measurements"]))
+            same = report["content_sha256"] == manifest.content_hash(self.out)
         except (ValueError, TypeError, KeyError, AttributeError) as error:
             raise OutputError(
-                f"{self.out / CHECKS}: cannot be read ({error!s:.200}); a report of lumitip-fab "
-                "check is needed. Run make check."
+                f"{self.out / CHECKS}: cannot be read ({error!r:.200}); a report of lumitip-fab "
+                "check is needed. Run make outputs."
             ) from error
+        return checked if same else ()
 
     def damaged(self, path: str, reason: object) -> OutputError:
         """The error for a file that cannot be shown."""
@@ -115,10 +132,13 @@ def board_path(name: str) -> str:
     return f"boards/{name}/{name}.kicad_pcb"
 
 
-def _measurement(entry: dict[str, Any]) -> Measurement:
+def _checked(entry: dict[str, Any]) -> Checked:
     figures: dict[str, Any] = {
         name: unknown if entry[name] is None else entry[name] for name, unknown in _BOUNDS.items()
     }
-    return Measurement(
+    if not isinstance(entry["passed"], bool):
+        raise TypeError(f"passed is {entry['passed']!r:.40}; true or false is needed")
+    measurement = Measurement(
         entry["check"], entry["subject"], **figures, unit=entry["unit"], note=entry["note"]
     )
+    return Checked(measurement, entry["passed"])

@@ -154,7 +154,7 @@ def _answers(folder: Folder, checks: Sequence[dict[str, Any]], parts: Sequence[P
             f"and {cure_h:g} h for the skin. "
             '<a href="#prints">Parts</a>',
         ),
-        _quality(checks, design.strength.rated_force_n),
+        _quality(folder, checks),
         _answer(
             "What is first?",
             "Order the boards",
@@ -172,12 +172,14 @@ def _first(folder: Folder) -> str:
     return '<a href="#prints">the parts</a>'
 
 
-def _quality(checks: Sequence[dict[str, Any]], rated_n: float) -> str:
+def _quality(folder: Folder, checks: Sequence[dict[str, Any]]) -> str:
     names = {entry["check"] for entry in checks}
     failed = {entry["check"] for entry in checks if not entry["passed"]}
+    rated_n = folder.design.strength.rated_force_n
     more = f'Rated for {figure(rated_n)} N at each tip. <a href="#checks">Checks</a>'
     if not checks:
-        return _answer("How good is it?", "Not checked", f"Run make check. {more}")
+        since = "" if folder.checked is None else " since the files changed"
+        return _answer("How good is it?", f"Not checked{since}", f"Run make outputs. {more}")
     if failed:
         return _answer("How good is it?", f"{len(failed)} of {len(names)} checks fail", more, "bad")
     measured = f"{len(checks)} measurements of the files are within their limits. {more}"
