@@ -67,13 +67,11 @@ class Bed {
   }
 }
 
+const onBed = (start) => attempt(start, "no-bed", ["bed-panel"]);
+
 function startBed() {
   const bed = new Bed(byId("bed"));
-  if (!webgl()) {
-    byId("bed-panel").hidden = true;
-    return;
-  }
-  window.lumitip.bed = bed;
+  window.lumitip = { ...window.lumitip, bed };
   byId("bed-part").addEventListener("change", (event) => bed.choose(event.target.value));
   shown.listeners.push((names) => {
     const name = names.find((each) => each.startsWith("print."));
@@ -82,8 +80,8 @@ function startBed() {
     bed.choose(file, place ? place.split(",").map(Number) : null);
   });
   new IntersectionObserver((entries) => {
-    if (entries.some((entry) => entry.isIntersecting)) bed.start();
+    if (entries.some((entry) => entry.isIntersecting)) onBed(() => bed.start());
   }, { rootMargin: "200px" }).observe(byId("bed"));
 }
 
-startBed();
+onBed(startBed);

@@ -38,6 +38,9 @@ def board_svg(name: str, board: KicadBoard, label: str, followed: Followed) -> s
         board: the board.
         label: what it shows, in words.
         followed: parts and nets of cells.
+
+    Raises:
+        ValueError: if the board has no closed outline.
     """
     outline = _outline(board)
     holes = [t for p in board.parts for t in p.terminals if t.drill_mm]
@@ -64,7 +67,9 @@ def _outline(board: KicadBoard) -> BaseGeometry:
     """The board: what its outline encloses, without what inner outlines enclose."""
     edges = shapely.set_precision(np.array(board.edges, dtype=object), _CLOSED_MM)
     rings = shapely.get_parts(shapely.polygonize([shapely.union_all(edges)]))
-    return max(rings, key=lambda ring: float(ring.area), default=shapely.Polygon())
+    if not len(rings):
+        raise ValueError("it has no closed outline")
+    return max(rings, key=lambda ring: float(ring.area))
 
 
 def _layers(name: str, board: KicadBoard, followed: Followed) -> Iterator[str]:

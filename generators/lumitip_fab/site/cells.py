@@ -90,6 +90,8 @@ def cell_records(folder: Folder) -> list[CellRecord]:
         layout = Layout.from_json(folder.text(LAYOUT))
     except ValueError as error:
         raise folder.damaged(LAYOUT, error) from error
+    if layout.design_hash != folder.design.layout.design_hash:
+        raise folder.damaged(LAYOUT, "it is of another design")
     return list(_Reader(folder, layout).records())
 
 
@@ -106,7 +108,7 @@ class _Reader:
     """Follows each cell through the files."""
 
     def __init__(self, folder: Folder, layout: Layout) -> None:
-        self.design, self.layout = folder.design, layout
+        self.folder, self.design, self.layout = folder, folder.design, layout
         self.wires = Wires(folder)
         self.emitter, self.receiver = (folder.board(f) for f in ("emitter", "receiver"))
         self.leds = devices(self.emitter, self.design.emitter)
@@ -172,6 +174,9 @@ class _Reader:
             notes.faults.append(f"{file}: net {signal} does not lead to {named}")
             return "", []
         nets = {t.number: t.net for t in chip.terminals}
+        for pin in (*package.select, package.output):
+            if str(pin) not in nets:
+                raise self.folder.damaged(board_path("receiver"), f"{named} has no pad {pin}")
         select = [nets[str(pin)] for pin in package.select]
         bits = " ".join(f"{net}={channel >> bit & 1}" for bit, net in enumerate(select))
         line = nets[str(package.output)]

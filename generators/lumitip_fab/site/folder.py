@@ -9,15 +9,24 @@ from pathlib import Path
 from typing import Any
 
 from lumitip_fab.checks.readers.kicad_board import KicadBoard, read_board
+from lumitip_fab.checks.readers.scene import Scene, read_scene
 from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline import manifest
-from lumitip_fab.pipeline.manifest import Manifest
+from lumitip_fab.pipeline.manifest import Entry, Manifest
 
 CHECKS, BILL, ORDER, CABLES = "checks.json", "bom.csv", "order.csv", "wiring/cables.csv"
+WIRING = "wiring/wiring.svg"
+SCENES = ("assembly/system.glb", "assembly/assembly.glb")
+"""The scene is the first of these that the folder has."""
+_COLUMNS = {
+    BILL: "group item manufacturer part for quantity unit price",
+    ORDER: "price",
+    CABLES: "wire signal from_board from_pad to_board to_pad colour length_mm",
+}
 _BOUNDS = {"measured": math.nan, "low": -math.inf, "high": math.inf}
 """What a figure is that the report has no number for."""
 
@@ -78,16 +87,36 @@ class Folder:
         """The rows of a table.
 
         Raises:
-            OutputError: if it is no table.
+            OutputError: if it is no table, has no rows, or lacks a column.
         """
         try:
-            return table(self.text(path))
+            rows = table(self.text(path))
         except ValueError as error:
             raise self.damaged(path, error) from error
+        if not rows:
+            raise self.damaged(path, "it has no rows")
+        if missing := [name for name in _COLUMNS[path].split() if name not in rows[0]]:
+            raise self.damaged(path, f"it has no column {missing[0]}")
+        return rows
+
+    def entry(self, path: str) -> Entry:
+        """The manifest's entry of a file.
+
+        Raises:
+            OutputError: if there is none.
+        """
+        try:
+            return self.manifest.files[path]
+        except KeyError as error:
+            raise self.damaged(manifest.NAME, f"it does not list {path}") from error
 
     def facts(self, path: str) -> Mapping[str, Any]:
-        """Figures of a file, from the manifest."""
-        return self.manifest.files[path].facts
+        """Figures of a file, from the manifest.
+
+        Raises:
+            OutputError: if it does not list the file.
+        """
+        return self.entry(path).facts
 
     def board(self, name: str) -> KicadBoard:
         """A board by its name.
@@ -96,6 +125,30 @@ class Folder:
             OutputError: if it cannot be read.
         """
         return read_board(self.out / board_path(name))
+
+    @cached_property
+    def scene_file(self) -> str:
+        """The GLB of the whole system, or of both fingers.
+
+        Raises:
+            OutputError: if there is none.
+        """
+        for path in SCENES:
+            if path in self.manifest.files:
+                return path
+        raise self.damaged(SCENES[-1], "the manifest does not list it")
+
+    @cached_property
+    def scene(self) -> Scene:
+        """That file's bodies.
+
+        Raises:
+            OutputError: if it cannot be read.
+        """
+        try:
+            return read_scene(self.out / self.scene_file)
+        except OutputError as error:
+            raise self.damaged(self.scene_file, error) from error
 
     @cached_property
     def checked(self) -> tuple[Checked, ...] | None:

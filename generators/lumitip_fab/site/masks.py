@@ -23,7 +23,7 @@ def mask_svg(folder: Folder, finger: Finger) -> str:
     """The mask of a finger at 1:1, each aperture with its cell.
 
     Raises:
-        OutputError: if the file has no aperture for a cell.
+        OutputError: if the file has no aperture for a cell, or is no such drawing.
     """
     file = f"mask/{finger.name}_mask.svg"
     text = folder.text(file)
@@ -31,8 +31,11 @@ def mask_svg(folder: Folder, finger: Finger) -> str:
     if black is None or size is None:
         raise folder.damaged(file, "no black area, or no size")
     runs = [f"M{run}" for run in black[1].split("M") if run]
-    middles = np.array([_middle(run) for run in runs])
-    to_file = np.linalg.inv(np.array(folder.manifest.files[file].to_sensor))
+    try:
+        middles = np.array([_middle(run) for run in runs])
+    except ValueError as error:
+        raise folder.damaged(file, error) from error
+    to_file = np.linalg.inv(np.array(folder.entry(file).to_sensor))
     width, height = size[1], size[2]
     holes = []
     for cell, place in enumerate(finger.cells):
@@ -59,6 +62,8 @@ def _on_page(to_file: Matrix, place: tuple[float, float]) -> NDArray[np.float64]
 def _middle(run: str) -> tuple[float, float]:
     """Middle of the corners of a run."""
     points = np.array(_NUMBER.findall(run), dtype=float).reshape(-1, 2)
+    if not len(points):
+        raise ValueError(f"{run:.40} has no corners")
     x, y = np.unique(points, axis=0).mean(axis=0)
     return float(x), float(y)
 

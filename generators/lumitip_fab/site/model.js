@@ -20,13 +20,20 @@ function rendererIn(box) {
   return renderer;
 }
 
+// Without a 3D view the rest of the page goes on, and says why there is none.
+function attempt(start, note, without) {
+  try {
+    if (!webgl()) throw new Error("this browser has no WebGL 2");
+    start();
+  } catch (error) {
+    byId(note).textContent = `There is no 3D view: ${error.message}.`;
+    byId(note).hidden = false;
+    for (const id of without) byId(id).hidden = true;
+  }
+}
+
 function startModel() {
   const box = byId("canvas");
-  if (!webgl()) {
-    byId("no-model").hidden = false;
-    box.hidden = byId("model-controls").hidden = true;
-    return;
-  }
   const scene = sceneOf(byId("scene-glb").textContent);
   const model = new Viewer(box, rendererIn(box), scene, (name) => !isRest(name));
   window.lumitip = { ...window.lumitip, model };
@@ -113,4 +120,4 @@ function switches(model) {
   }
 }
 
-startModel();
+attempt(startModel, "no-model", ["canvas", "model-controls"]);

@@ -2,11 +2,13 @@
 
 import base64
 import json
+import re
 from collections.abc import Sequence
 from dataclasses import asdict
 from html import escape
 from string import Template
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -16,7 +18,7 @@ from lumitip_fab.site.beds import bed_mesh
 from lumitip_fab.site.boards import Followed, board_svg
 from lumitip_fab.site.cells import CellRecord, cell_records
 from lumitip_fab.site.checks import check_rows, figure
-from lumitip_fab.site.folder import Folder
+from lumitip_fab.site.folder import WIRING, Folder, board_path
 from lumitip_fab.site.library import three_js
 from lumitip_fab.site.masks import grid_svg, mask_svg
 from lumitip_fab.site.tables import (
@@ -47,9 +49,7 @@ SCRIPTS = (
     "grasp.js",
     "start.js",
 )
-SCENES = ("assembly/system.glb", "assembly/assembly.glb")
-"""The scene is the first of these that the folder has."""
-WIRING = "wiring/wiring.svg"
+_SVG = re.compile(r'<svg\b[^>]*\bviewBox="([^"]+)"[^>]*>(.*)', re.DOTALL)
 
 
 def page(folder: Folder, figures: Sequence[Figure]) -> str:
@@ -86,7 +86,7 @@ def page(folder: Folder, figures: Sequence[Figure]) -> str:
         "last": len(layout) - 1,
         "grid": grid_svg(layout.x_mm.tolist(), layout.y_mm.tolist(), layout.pitch_mm),
         "inputs": _inputs(records, folder),
-        "wiring": _wiring(folder.text(WIRING)),
+        "wiring": _wiring(folder),
         "auxiliary": "".join(_auxiliary(folder)),
         "orders": order_table(folder, targets),
         "prints": print_table(parts),
@@ -114,9 +114,14 @@ def twin_data(layout: Layout) -> dict[str, Any]:
 
 
 def _scene(folder: Folder) -> str:
-    """The GLB of the whole system, or of both fingers, in base 64."""
-    file = next(path for path in SCENES if path in folder.manifest.files)
-    return base64.b64encode((folder.out / file).read_bytes()).decode()
+    """The GLB of the whole system, or of both fingers, in base 64.
+
+    Raises:
+        OutputError: if it holds no such scene: a browser would stop at it.
+    """
+    if not folder.scene.nodes:
+        raise folder.damaged(folder.scene_file, "it holds no bodies")
+    return base64.b64encode((folder.out / folder.scene_file).read_bytes()).decode()
 
 
 def _json(data: Any) -> str:
@@ -204,14 +209,21 @@ def _finger(folder: Folder, name: str, records: Sequence[CellRecord]) -> str:
         if net.startswith(f"{name}:")
     }
     label = f"{name.capitalize()} board seen from its front, tip up"
-    return board_svg(name, folder.board(name), label, Followed(parts, nets))
+    return _board(folder, name, label, Followed(parts, nets))
+
+
+def _board(folder: Folder, name: str, label: str, followed: Followed) -> str:
+    try:
+        return board_svg(name, folder.board(name), label, followed)
+    except ValueError as error:
+        raise folder.damaged(board_path(name), error) from error
 
 
 def _auxiliary(folder: Folder) -> list[str]:
     return [
         f'<figure class="panel" id="board-{a.name}"><figcaption><h3>{a.name.capitalize()}</h3>'
         f'<p class="soft">{escape(a.title)}, from the front</p></figcaption>'
-        + board_svg(a.name, folder.board(a.name), f"{a.title} from its front", Followed({}, {}))
+        + _board(folder, a.name, f"{a.title} from its front", Followed({}, {}))
         + "</figure>"
         for a in folder.design.auxiliary_boards
     ]
@@ -240,10 +252,18 @@ def _inputs(records: Sequence[CellRecord], folder: Folder) -> str:
     )
 
 
-def _wiring(svg: str) -> str:
-    """The diagram of the cables, its wires by their numbers, without a size of its own."""
-    start = svg.index("<svg")
-    head, _, body = svg[start:].partition(">")
-    box = head.partition('viewBox="')[2].partition('"')[0]
-    body = body.replace(' id="', ' data-wire="')
-    return f'<svg class="wiring" viewBox="{box}" role="img" aria-label="Wiring">{body}'
+def _wiring(folder: Folder) -> str:
+    """The diagram of the cables, its wires by their numbers, without a size of its own.
+
+    Raises:
+        OutputError: if the file is no SVG with a view box.
+    """
+    svg = folder.text(WIRING)
+    try:
+        ElementTree.fromstring(svg)  # one that is not closed would take in the rest of the page
+    except ElementTree.ParseError as error:
+        raise folder.damaged(WIRING, error) from error
+    if (found := _SVG.search(svg)) is None:
+        raise folder.damaged(WIRING, "it has no view box")
+    body = found[2].replace(' id="', ' data-wire="')
+    return f'<svg class="wiring" viewBox="{found[1]}" role="img" aria-label="Wiring">{body}'

@@ -7,12 +7,12 @@ from html import escape
 
 from lumitip_fab.design.mould import printed_times
 from lumitip_fab.design.print_time import print_seconds
+from lumitip_fab.pipeline.manifest import NAME as MANIFEST
 from lumitip_fab.site.folder import BILL, ORDER, Folder, board_path
 from lumitip_fab.site.targets import Targets
 
 PRINTING = "print/printing.md"
 _ROW = re.compile(r"^\| `([^`]+)` \| .* \| (.*) \|$", re.MULTILINE)
-_ANY = "any other `.3mf`"
 Figure = tuple[str, str, str, str]
 """Quantity, published, this design, reason."""
 
@@ -41,7 +41,11 @@ class Print:
 
 
 def prints(folder: Folder) -> list[Print]:
-    """Every printed part with its print data; masks only where they are printed."""
+    """Every printed part with its print data; masks only where they are printed.
+
+    Raises:
+        OutputError: if the manifest lacks the figures of a part.
+    """
     design = folder.design
     lies = dict(_ROW.findall(folder.text(PRINTING)))
     found = []
@@ -53,17 +57,14 @@ def prints(folder: Folder) -> list[Print]:
             continue
         facts, filament = folder.facts(path), design.slicing.of(path)
         brim = filament != design.slicing.sheet
-        seconds = print_seconds(facts, filament, design.printing, brim)
-        found.append(
-            Print(
-                path,
-                filament.name,
-                printed_times(design.mould_accessories, path),
-                seconds / 60,
-                facts["volume_mm3"] / 1000 * filament.density_g_ml,
-                lies.get(path.replace(".stl", ".3mf"), "as its file lies"),
-            )
-        )
+        try:
+            minutes = print_seconds(facts, filament, design.printing, brim) / 60
+            grams = facts["volume_mm3"] / 1000 * filament.density_g_ml
+        except (KeyError, TypeError) as error:
+            raise folder.damaged(MANIFEST, f"{path} lacks a figure: {error!r}") from error
+        number = printed_times(design.mould_accessories, path)
+        place = lies.get(path.replace(".stl", ".3mf"), "as its file lies")
+        found.append(Print(path, filament.name, number, minutes, grams, place))
     return found
 
 
@@ -124,12 +125,17 @@ def totals(folder: Folder) -> tuple[float, float, str]:
     Raises:
         OutputError: if a table has no sum.
     """
+    stated, _, _ = folder.rows(BILL)[-1]["for"].partition(":")
+    return _sum(folder, BILL), _sum(folder, ORDER), stated
+
+
+def _sum(folder: Folder, path: str) -> float:
+    """The price in the last row of a table."""
+    price = folder.rows(path)[-1]["price"]
     try:
-        used, packs = folder.rows(BILL)[-1], folder.rows(ORDER)[-1]
-        stated, _, _ = used["for"].partition(":")
-        return float(used["price"]), float(packs["price"]), stated
-    except (IndexError, KeyError, ValueError) as error:
-        raise folder.damaged(BILL, f"no sum: {error}") from error
+        return float(price)
+    except ValueError as error:
+        raise folder.damaged(path, f"its last row has no sum but {price!r:.40}") from error
 
 
 def figure_table(figures: Iterable[Figure]) -> str:
