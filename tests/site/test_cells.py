@@ -66,7 +66,7 @@ def test_the_place_in_the_address_is_a_cell(opened: Opened) -> None:
     tab = opened("#cell-17")
     assert marked(tab, "board-emitter") == [17]
     tab.evaluate("location.hash = '#cell-3'")
-    tab.wait_for_timeout(100)
+    tab.wait_for_function("follow.cell === 3")
     assert marked(tab, "board-emitter") == [3]
     assert marked(opened("#cell-99"), "view") == marked(opened(), "view")
 

@@ -135,9 +135,10 @@ def test_keys_and_the_mouse_turn_it(opened: Opened) -> None:
 
 
 def on_bed(tab: Page) -> np.ndarray:
-    """The colours of the view of the bed."""
+    """The colours of the view of the bed, once it stands still."""
     tab.locator("#bed canvas").scroll_into_view_if_needed()
-    tab.wait_for_timeout(500)
+    tab.wait_for_function("lumitip.bed.viewer.sized && !lumitip.bed.viewer.waiting")
+    tab.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
     return np.asarray(Image.open(BytesIO(tab.locator("#bed").screenshot())).convert("RGB"), int)
 
 

@@ -19,6 +19,7 @@ from lumitip_fab.design.encoding import read_design
 from lumitip_fab.diff.folder import read_folder
 from lumitip_fab.site.checks import check_rows
 from lumitip_fab.site.folder import Folder
+from lumitip_fab.site.tables import prints
 from lumitip_fab.site.targets import Targets
 from site_page import Opened
 
@@ -103,6 +104,14 @@ def test_checks_are_filtered_and_sorted(opened: Opened) -> None:
     assert tab.locator("#check-table th").first.get_attribute("aria-sort") == "descending"
 
 
+def test_a_range_in_words_has_no_order(opened: Opened) -> None:
+    heads = opened().locator("#check-table th")
+    named = dict(zip(heads.all_text_contents(), heads.all(), strict=True))
+    buttons = {name for name, head in named.items() if head.locator("button").count()}
+    assert set(named) - buttons == {"limit", "place"}
+    assert named["limit"].get_attribute("aria-sort") is None
+
+
 def _report(folder: Path) -> dict[str, Any]:
     return dict(json.loads((folder / "checks.json").read_text(encoding="utf-8")))
 
@@ -164,6 +173,52 @@ def test_a_row_shows_its_parts_and_goes_back(opened: Opened) -> None:
     assert tab.locator(".lit").count() == 0
     assert tab.evaluate("document.activeElement.textContent") == "show"
     assert not tab.locator("#shown").is_visible()
+
+
+def test_a_sorted_table_keeps_what_is_shown(opened: Opened) -> None:
+    tab = opened()
+    tab.locator("#query").fill("holder.grip")
+    tab.locator("#check-table tbody .show").click()
+    tab.locator("#check-table thead button").first.click()
+    pressed = tab.locator("#check-table .show[aria-pressed=true]")
+    assert pressed.count() == 1
+    tab.locator("#query").press("Escape")
+    assert tab.locator("#shown").is_visible()
+    tab.locator("#query").fill("mould.thickness")
+    assert pressed.count() == 0
+    tab.locator("#query").fill("holder.grip")
+    pressed.focus()
+    tab.keyboard.press("Escape")
+    assert not tab.locator("#shown").is_visible()
+    label = "document.activeElement.getAttribute('aria-label')"
+    assert str(tab.evaluate(label)).startswith("Show holder.grip of ")
+    tab.locator("#check-table tbody .show").click()
+    tab.locator("#query").fill("mould.thickness")
+    tab.locator("#shown-back").click()
+    assert tab.evaluate("document.activeElement.id") == "query"
+
+
+def test_every_name_that_a_line_shows_is_in_a_panel(opened: Opened) -> None:
+    tab = opened()
+    lost = """[...new Set([...data.checks.flatMap(row => row.show),
+        ...all(".show").flatMap(button => button.dataset.show.split(" "))])].filter(name =>
+        !parts.has(name) && !shown.has(name) && !panelsOf(name).length)"""
+    assert tab.evaluate(lost) == []
+    assert tab.locator("#bill .show").count() > 20
+    prints = tab.evaluate("all('option', byId('bed-part')).map(option => option.value)")
+    names = tab.evaluate("data.checks.flatMap(row => row.show)")
+    files = {name.removeprefix("print.").partition("@")[0] for name in names if "print." in name}
+    assert files and files <= set(prints)
+
+
+def test_the_head_has_the_whole_time_and_both_sums(opened: Opened, site: Path) -> None:
+    answers = opened().locator(".answer").all_text_contents()
+    minutes = sum(part.minutes * part.number for part in prints(Folder.of(site)))
+    hours, rest = divmod(round(minutes), 60)
+    assert rest and f"{hours} h {rest:02d} min of printing" in answers[1]
+    with (site / "order.csv").open(encoding="utf-8", newline="") as file:
+        packs = float(list(csv.DictReader(file))[-1]["price"])
+    assert f"{packs:.0f} EUR if whole packs are bought." in answers[0]
 
 
 def test_every_line_of_the_bill_and_every_print_is_there(opened: Opened, site: Path) -> None:

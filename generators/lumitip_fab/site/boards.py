@@ -95,11 +95,20 @@ def _net(name: str, net: str, areas: Sequence[BaseGeometry], followed: Followed,
     )
 
 
+def drawn_parts(board: KicadBoard) -> set[str]:
+    """References of the parts that a drawing of the board has: those with pads."""
+    return {part.ref for part in board.parts if _pads(part)}
+
+
+def _pads(part: Part) -> list[BaseGeometry]:
+    return [t.copper.area for t in part.terminals if t.copper is not None and t.number]
+
+
 def _parts(name: str, parts: Sequence[Part], followed: Followed) -> Iterator[str]:
     """Parts with pads; those of cells can be chosen."""
     across, down = BOARD_ON_PAGE_MM
     for part in sorted(parts, key=lambda p: (p.ref in followed.parts, p.ref)):
-        pads = [t.copper.area for t in part.terminals if t.copper is not None and t.number]
+        pads = _pads(part)
         if not pads:
             continue
         body = shapely.minimum_rotated_rectangle(shapely.union_all(pads)).buffer(

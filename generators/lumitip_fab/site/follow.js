@@ -44,8 +44,13 @@ function choose(cell, pushed = true) {
   ]));
   byId("faults").textContent = record.faults.join("; ");
   byId("number").value = cell;
-  if (pushed) history.replaceState(null, "", `#cell-${cell}`);
   for (const listener of follow.listeners) listener(cell);
+  if (!pushed) return;
+  try {
+    history.replaceState(null, "", `#cell-${cell}`);
+  } catch {
+    // Safari refuses more than 100 in 30 s; the address then has the cell before.
+  }
 }
 
 // A panel has one stop of the tabulator key; arrows go from cell to cell.

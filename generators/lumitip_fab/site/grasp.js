@@ -76,6 +76,9 @@ class Grasp {
 }
 
 function startGrasp() {
+  for (const [way, limits] of Object.entries(data.extent)) {
+    [byId(`grasp-${way}`).min, byId(`grasp-${way}`).max] = limits;
+  }
   const grasp = new Grasp(new Twin(data.twin));
   const svg = byId("grid");
   window.lumitip = { ...window.lumitip, grasp };
@@ -103,8 +106,8 @@ function startGrasp() {
     if (!moved) svg.setPointerCapture(event.pointerId);
     moved = true;
     const [x, y] = place(event);
-    const within = (v) => Math.min(Math.max(v, -25), 25);
-    grasp.change({ x: within(shapeX + x - startX), y: within(shapeY + y - startY) });
+    const within = (way, v) => Math.min(Math.max(v, data.extent[way][0]), data.extent[way][1]);
+    grasp.change({ x: within("x", shapeX + x - startX), y: within("y", shapeY + y - startY) });
   });
   for (const name of ["pointerup", "pointercancel"]) {
     svg.addEventListener(name, () => {

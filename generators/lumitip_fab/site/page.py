@@ -2,15 +2,18 @@
 
 import base64
 import json
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import asdict
 from html import escape
 from string import Template
 from typing import Any
+from urllib.parse import quote
 from xml.etree import ElementTree
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lumitip.layout import Layout
 from lumitip.twin import Model
@@ -73,6 +76,7 @@ def page(folder: Folder, figures: Sequence[Figure]) -> str:
         "checks": checks,
         "middle": middle,
         "twin": twin_data(layout),
+        "extent": {"x": _extent(layout, layout.x_mm), "y": _extent(layout, layout.y_mm)},
         "prints": [
             {"file": part.file, "text": part.text, **bed_mesh(folder, part.file)} for part in parts
         ],
@@ -92,7 +96,7 @@ def page(folder: Folder, figures: Sequence[Figure]) -> str:
         "prints": print_table(parts),
         "parts": "".join(f"<option>{escape(part.file)}</option>" for part in parts),
         "bill": bill_table(folder, targets),
-        "sums": f"{used:.2f} used by one pair of fingers, {packs:.2f} with whole packs",
+        "sums": f"{used:.2f} used by one pair of fingers, {packs:.2f} if whole packs are bought",
         "prices": escape(stated),
         "figures": figure_table(figures),
         "files": "".join(file_lists(folder)),
@@ -111,6 +115,12 @@ def twin_data(layout: Layout) -> dict[str, Any]:
     """Cells and optical model, as the twin in the page takes them."""
     model = asdict(Model.from_layout(layout))
     return {"x_mm": layout.x_mm.tolist(), "y_mm": layout.y_mm.tolist(), "model": model}
+
+
+def _extent(layout: Layout, along_mm: NDArray[np.float64]) -> tuple[int, int]:
+    """From where to where an object may be moved, mm: a pitch beyond the cells."""
+    pitch = layout.pitch_mm
+    return math.floor(along_mm.min() - pitch), math.ceil(along_mm.max() + pitch)
 
 
 def _scene(folder: Folder) -> str:
@@ -150,11 +160,11 @@ def _answers(folder: Folder, checks: Sequence[dict[str, Any]], parts: Sequence[P
         _answer(
             "What does it cost?",
             f"{used:.0f} {currency}",
-            f'{packs:.0f} {currency} with whole packs. <a href="#bill">Bill</a>',
+            f'{packs:.0f} {escape(currency)} if whole packs are bought. <a href="#bill">Bill</a>',
         ),
         _answer(
             "How long does it take?",
-            f"{duration(minutes).partition(' h')[0]} h of printing",
+            f"{duration(minutes)} of printing",
             f"then {glue_h + 2 * cure_h:g} h of waiting: {glue}silicone {cure_h:g} h for a trial "
             f"and {cure_h:g} h for the skin. "
             '<a href="#prints">Parts</a>',
@@ -173,7 +183,7 @@ def _answers(folder: Folder, checks: Sequence[dict[str, Any]], parts: Sequence[P
 def _first(folder: Folder) -> str:
     file = "fit/fit_plate.stl"
     if file in folder.manifest.files:
-        return f'the <a href="{file}">fit test plate</a>'
+        return f'the <a href="{quote(file)}">fit test plate</a>'
     return '<a href="#prints">the parts</a>'
 
 

@@ -34,10 +34,11 @@ document.addEventListener("click", (event) => {
   show(again ? [] : button.dataset.show.split(" "), button);
 });
 document.addEventListener("keydown", (event) => {
-  if (event.key === "Escape" && shown.names.length) back();
+  const typed = event.target.closest?.("input, select"); // where Escape has its own meaning
+  if (event.key === "Escape" && shown.names.length && !typed) back();
 });
 function back() {
-  const from = shown.from;
+  const from = shown.from.isConnected ? shown.from : byId("query"); // which has left its line out
   show([], from);
   from.scrollIntoView({ block: "center" });
   from.focus({ preventScroll: true });
@@ -114,14 +115,26 @@ function lineOf(row) {
   return line;
 }
 
+// Lines that are drawn anew have new buttons, one of them for what is shown.
+function findShower() {
+  if (!shown.names.length || shown.from.isConnected) return;
+  const same = (button) => ["data-show", "aria-label"].every((name) =>
+    button.getAttribute(name) === shown.from.getAttribute(name));
+  const found = all("#check-table .show").find(same);
+  found?.setAttribute("aria-pressed", "true");
+  shown.from = found || shown.from;
+}
+
 function drawChecks() {
   const rows = ordered(matching());
   byId("check-table").tBodies[0].replaceChildren(...rows.slice(0, state.limit).map(lineOf));
+  findShower();
   const failed = rows.filter((row) => !row.passed).length;
   byId("count").textContent = `${rows.length} of ${data.checks.length} measurements, `
     + `${failed} fail`;
   byId("more").hidden = rows.length <= state.limit;
   for (const [at, [name]] of COLUMNS.entries()) {
+    if (name === "limit") continue;
     const order = state.column !== name ? "none" : state.down ? "descending" : "ascending";
     byId("check-table").tHead.rows[0].cells[at].setAttribute("aria-sort", order);
   }
@@ -131,6 +144,10 @@ function headChecks() {
   const heads = COLUMNS.map(([name, title]) => {
     const head = Object.assign(document.createElement("th"), { scope: "col" });
     if (NUMBERS.has(name)) head.className = "n";
+    if (name === "limit") { // a range in words, in the unit of its line, has no order
+      head.textContent = title;
+      return head;
+    }
     const button = Object.assign(document.createElement("button"), { type: "button" });
     button.textContent = title;
     button.addEventListener("click", () => {

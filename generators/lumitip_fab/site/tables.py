@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
+from urllib.parse import quote
 
 from lumitip_fab.design.mould import printed_times
 from lumitip_fab.design.print_time import print_seconds
@@ -73,7 +74,7 @@ def print_table(parts: Sequence[Print]) -> str:
     rows = [
         row(
             [
-                f'<a href="{part.file}">{escape(part.file)}</a>',
+                _link(part.file, part.file),
                 escape(part.filament),
                 str(part.number),
                 duration(part.minutes),
@@ -187,7 +188,7 @@ def _has(folder: Folder, path: str) -> bool:
 
 
 def _link(path: str, text: str) -> str:
-    return f'<a href="{escape(path)}">{escape(text)}</a>'
+    return f'<a href="{quote(path)}">{escape(text)}</a>'
 
 
 def _size(count: int) -> str:

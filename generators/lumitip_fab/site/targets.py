@@ -4,8 +4,9 @@ A body of the 3D view and a part of a board have the same name, such as `emitter
 """
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 
+from lumitip_fab.site.boards import drawn_parts
 from lumitip_fab.site.folder import Folder, board_path
 
 _REFERENCE = re.compile(r"\b[A-Z]{1,3}\d+\b")
@@ -37,9 +38,26 @@ class Targets:
         self._parts = {
             board: folder.facts(board_path(board)).get("parts", ()) for board in self.boards
         }
+        self._panels = {
+            *folder.scene.nodes,
+            *(f"{b}.{ref}" for b in self.boards for ref in drawn_parts(folder.board(b))),
+            *(f"board.{board}" for board in self.boards),
+            *(f"mask.{finger}" for finger in self.fingers),
+            *(f"print.{path}" for path in printed),
+            "wires",
+            "grid",
+        }
 
-    def of_file(self, path: str) -> Iterator[str]:
+    def _shown(self, names: Iterable[str]) -> list[str]:
+        """Those of some names that a panel of the page has, each once."""
+        once = dict.fromkeys(names)
+        return [name for name in once if name.partition("@")[0] in self._panels]
+
+    def of_file(self, path: str) -> list[str]:
         """What a file makes."""
+        return self._shown(self._of_file(path))
+
+    def _of_file(self, path: str) -> Iterator[str]:
         folder, _, name = path.partition("/")
         fingers = _FINGER.findall(name.replace("_", " ")) or self.fingers
         if folder in ("backing", "interface"):
@@ -53,7 +71,7 @@ class Targets:
         elif folder == "holder":
             yield "holder.tray"
         elif folder == "boards":
-            yield from self.of_board(name.partition("/")[0])
+            yield from self._of_board(name.partition("/")[0])
         elif folder == "wiring":
             yield "wires"
         elif path in ("layout.json", "firmware/layout.h"):
@@ -62,8 +80,11 @@ class Targets:
         if mesh in self.printed:
             yield f"print.{mesh}"
 
-    def of_board(self, name: str) -> Iterator[str]:
+    def of_board(self, name: str) -> list[str]:
         """A bare board."""
+        return self._shown(self._of_board(name))
+
+    def _of_board(self, name: str) -> Iterator[str]:
         if name in self.boards:
             yield f"board.{name}"
             yield _OF_BREAKOUT if name == "breakout" else f"{name}.board"
@@ -78,10 +99,13 @@ class Targets:
         board = file.split("/")[1] if file.startswith("boards/") and file.count("/") > 1 else ""
         known = self.references.get(board, set())
         found += [f"{board}.{ref}" for ref in _REFERENCE.findall(rest) if ref in known]
-        return list(dict.fromkeys([*found, *self.of_file(file)]))
+        return self._shown([*found, *self._of_file(file)])
 
     def of_line(self, group: str, item: str, part: str) -> list[str]:
         """What a line of the bill buys."""
+        return self._shown(self._of_line(group, item, part))
+
+    def _of_line(self, group: str, item: str, part: str) -> list[str]:
         if group == "electronics":
             return [
                 f"{board}.{ref}"
@@ -91,9 +115,9 @@ class Targets:
                 for ref in entry["refs"].split(",")
             ]
         if group == "boards":
-            return list(self.of_board(item.removesuffix(" board")))
+            return list(self._of_board(item.removesuffix(" board")))
         if group == "prints":
-            return list(self.of_file(item))
+            return list(self._of_file(item))
         if group == "casting":
             return [f"{finger}.silicone" for finger in self.fingers]
         if group == "mask":
