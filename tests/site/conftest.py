@@ -36,7 +36,7 @@ def edited(site: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(site, tmp_path / "edited"))
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")  # while it is open, no other test of a process can open one
 def browser() -> Iterator[Browser]:
     with sync_playwright() as playwright:
         opened = playwright.chromium.launch(
