@@ -108,11 +108,11 @@ def test_every_check_fails_through_the_command_line_and_the_memory(
     assert main(["check", *options]) == 1
     text = capsys.readouterr().out
     assert len(ElementTree.parse(xml).findall("testcase/failure")) == len(measured)
-    told = strict(file.read_text(encoding="utf-8"))
-    failed_in_file = {m["check"] for m in told["measurements"] if m["passed"] is False}
+    report = strict(file.read_text(encoding="utf-8"))
+    failed_in_file = {m["check"] for m in report["measurements"] if m["passed"] is False}
     assert failed_in_file == {m.check for m in measured}
     if amount == "--json":
-        assert strict(text) == told
+        assert strict(text) == report
     else:
         failed = len(measured if amount else {m.check for m in measured})
         assert f"{failed} FAILED" in text

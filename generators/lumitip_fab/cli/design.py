@@ -4,12 +4,11 @@ import argparse
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from lumitip_fab.checks.run import run_checks
 from lumitip_fab.cli.build import build
-from lumitip_fab.cli.screen import ERR, FAILED, OUT
+from lumitip_fab.cli.screen import ERR, FAILED, OUT, counted
 from lumitip_fab.config.load import Input
 from lumitip_fab.errors import BuildError, InputError, Problem
 from lumitip_fab.explore.accuracy import Sample
@@ -27,14 +26,8 @@ def run(options: argparse.Namespace) -> int:
     _require_in_range(options)
     task = read_goals(options.goals)
     asked = Options(options.designs, options.points, options.seed, Sample(seed=options.seed))
-    columns = (TextColumn("designs"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     silent = options.quiet or options.json
-    with Progress(*columns, console=ERR, disable=silent, transient=True) as bar:
-        shown = bar.add_task("designs", total=None)
-
-        def progress(done: int, total: int) -> None:
-            bar.update(shown, completed=done, total=total)
-
+    with counted("designs", silent) as progress:
         found = study(task, options.out, asked, options.scheduler, progress)
     written = files.write(found, options.out)
     if options.json:

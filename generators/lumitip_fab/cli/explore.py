@@ -2,9 +2,7 @@
 
 import argparse
 
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
-from lumitip_fab.cli.screen import ERR, OUT
+from lumitip_fab.cli.screen import OUT, counted
 from lumitip_fab.explore import report
 from lumitip_fab.explore.accuracy import Sample
 from lumitip_fab.explore.run import explore
@@ -12,14 +10,8 @@ from lumitip_fab.explore.run import explore
 
 def run(options: argparse.Namespace) -> int:
     """Run a study, with progress."""
-    columns = (TextColumn("designs"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     silent = options.quiet or options.json
-    with Progress(*columns, console=ERR, disable=silent, transient=True) as bar:
-        shown = bar.add_task("designs", total=None)
-
-        def progress(done: int, total: int) -> None:
-            bar.update(shown, completed=done, total=total)
-
+    with counted("designs", silent) as progress:
         study = explore(
             options.file,
             options.vary,

@@ -76,7 +76,7 @@ def cost(config: Input, design: Design, prices: Prices) -> float:
     )
 
 
-_DIGITS = 5  # of every figure: the same on any machine
+_DIGITS = 5
 
 FIGURES = (
     "error_mm",
@@ -111,16 +111,27 @@ class Job:
     @classmethod
     def of(cls, config: Input, changes: Changes, prices: Prices, sample: Sample) -> "Job":
         """A job with its key."""
-        inputs = [
-            config.parameters.model_dump(),
-            {field: part.model_dump() for field, part in config.parts_by_field().items()},
-            prices.model_dump(),
-            sample,
-            code_hash("explore"),
-            np.__version__,
-        ]
-        key = hashlib.sha256(canonical(inputs).encode()).hexdigest()
+        key = key_of(config, prices, sample, code_hash("explore"))
         return cls(config, changes, prices, sample, key)
+
+
+def key_of(config: Input, prices: Prices, *others: Any) -> str:
+    """SHA-256 of a design, of prices, and of all else that a result depends on.
+
+    Args:
+        config: the design's parameters, with the parts that they name.
+        prices: of its parts.
+        others: plain values, records, and the hash of the code.
+    """
+    inputs = [
+        config.parameters.model_dump(),
+        sorted(config.automatic),
+        {field: part.model_dump() for field, part in config.parts_by_field().items()},
+        prices.model_dump(),
+        *others,
+        np.__version__,
+    ]
+    return hashlib.sha256(canonical(inputs).encode()).hexdigest()
 
 
 def evaluate(job: Job) -> Record:
@@ -141,10 +152,11 @@ def evaluate(job: Job) -> Record:
         "cost": cost(resolved.config, design, job.prices),
         "current_ma": float(sum(design.wiring.current_ma)),
     }
-    return {"key": job.key, "figures": {n: _rounded(figures[n]) for n in FIGURES}}
+    return {"key": job.key, "figures": {n: rounded(figures[n]) for n in FIGURES}}
 
 
-def _rounded(value: float) -> float:
+def rounded(value: float) -> float:
+    """A figure with as many digits as are the same on any machine."""
     return float(f"{value:.{_DIGITS}g}")
 
 

@@ -11,10 +11,10 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from lumitip_fab.explore.front import undominated
+from lumitip_fab.explore.picture import pictures
 from lumitip_fab.explore.run import Found, Study
 from lumitip_fab.pipeline.manifest import write_file
-
-_DOTS_PER_INCH = 150
 
 
 def plot(study: Study, best: Collection[int]) -> dict[str, bytes]:
@@ -22,12 +22,9 @@ def plot(study: Study, best: Collection[int]) -> dict[str, bytes]:
     shown = [(found, n in best) for n, found in enumerate(study.designs) if found.figures]
     if not shown:
         return {}
-    from matplotlib import rc_context
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(13.0, 4.2), layout="constrained")
-    FigureCanvasAgg(figure)
     axes = figure.subplots(1, 4, sharey=True)
     label, marks = _coloured_by(study, [found for found, _ in shown])
     headings = {
@@ -49,13 +46,7 @@ def plot(study: Study, best: Collection[int]) -> dict[str, bytes]:
     figure.colorbar(axes[-1].collections[0], ax=axes, label=label, pad=0.01)
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
-    pictures = {}
-    with rc_context({"svg.hashsalt": "pareto", "svg.fonttype": "none"}):
-        for kind, metadata in (("svg", {"Date": None}), ("png", {"Software": None})):
-            written = io.BytesIO()
-            figure.savefig(written, format=kind, metadata=metadata, dpi=_DOTS_PER_INCH)
-            pictures[f"pareto.{kind}"] = written.getvalue()
-    return pictures
+    return pictures(figure, "pareto")
 
 
 def _panel(
@@ -111,14 +102,8 @@ def front(designs: Sequence[Found]) -> set[int]:
         for number, found in enumerate(designs)
         if found.figures
     }
-    return {
-        number
-        for number, own in rated.items()
-        if not any(
-            other != own and all(o <= m for o, m in zip(other, own, strict=True))
-            for other in rated.values()
-        )
-    }
+    best = undominated(set(rated.values()))
+    return {number for number, own in rated.items() if own in best}
 
 
 def write(study: Study, folder: Path) -> list[Path]:

@@ -22,7 +22,7 @@ _POLYGON = 3  # of shapely's types
 
 @dataclass(frozen=True)
 class Followed:
-    """What of a board belongs to one cell alone."""
+    """Parts and nets of a board that belong to one cell alone."""
 
     parts: Mapping[str, int]
     """Cell of each part, by reference."""

@@ -1,5 +1,5 @@
-"""What belongs to each cell, read from the boards' copper, `layout.json`, the list of cables and
-the firmware; where two files disagree, both are named."""
+"""Parts, nets and places of each cell, read from the boards' copper, `layout.json`, the list of
+cables and the firmware; where two files disagree, both are named."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -97,7 +97,7 @@ def cell_records(folder: Folder) -> list[CellRecord]:
 
 @dataclass
 class _Notes:
-    """What is found on the way of one cell."""
+    """Parts, rows and faults found on the way of one cell."""
 
     parts: dict[str, str] = field(default_factory=dict)
     rows: list[tuple[str, str]] = field(default_factory=list)

@@ -28,7 +28,7 @@ _COLUMNS = {
     CABLES: "wire signal from_board from_pad to_board to_pad colour length_mm",
 }
 _BOUNDS = {"measured": math.nan, "low": -math.inf, "high": math.inf}
-"""What a figure is that the report has no number for."""
+"""Value of a figure that the report has no number for."""
 
 
 @dataclass(frozen=True)
@@ -152,7 +152,7 @@ class Folder:
 
     @cached_property
     def checked(self) -> tuple[Checked, ...] | None:
-        """What the checks measured in the files as they are now; none where there is no report.
+        """Measurements of the files as they are now; none where there is no report.
 
         It is empty if files have changed since they were checked.
 

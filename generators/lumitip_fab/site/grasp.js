@@ -1,25 +1,9 @@
-// What the cells read of an edge, a cable or a corner that is drawn over them.
+// Values of the cells behind an edge, a cable or a corner that is drawn over them.
 const GRASP = { kind: "edge", x: -3, y: 1.5, angle_deg: 20, diameter: 3 };
 const FAR_MM = 200;
 const SLIDERS = { x: "x", y: "y", angle: "angle_deg", diameter: "diameter" };
 
-// Colour of a value: a straight way through Oklab, as in the live view.
-function rampOf(value) {
-  const share = value / FULL;
-  const [dark, light] = [[0.25, -0.015, -0.09], [0.93, -0.035, 0.13]];
-  const [l, a, b] = dark.map((start, i) => start + share * (light[i] - start));
-  const long = (l + 0.3963377774 * a + 0.2158037573 * b) ** 3;
-  const middle = (l - 0.1055613458 * a - 0.0638541728 * b) ** 3;
-  const short = (l - 0.0894841775 * a - 1.291485548 * b) ** 3;
-  const linear = [
-    4.0767416621 * long - 3.3077115913 * middle + 0.2309699292 * short,
-    -1.2684380046 * long + 2.6097574011 * middle - 0.3413193965 * short,
-    -0.0041960863 * long - 0.7034186147 * middle + 1.7076147010 * short,
-  ].map((v) => Math.min(Math.max(v, 0), 1));
-  const coded = linear.map((v) => (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055));
-  return `rgb(${coded.map((v) => Math.round(255 * v)).join(" ")})`;
-}
-const RAMP = Array.from({ length: FULL + 1 }, (_, value) => rampOf(value));
+const FILLS = RAMP.map((rgb) => `rgb(${rgb.join(" ")})`);
 
 class Grasp {
   constructor(twin) {
@@ -37,7 +21,7 @@ class Grasp {
     values.forEach((value, cell) => {
       const { hexagon, texts } = this.pixels[cell];
       const whole = Math.round(value);
-      hexagon.style.fill = RAMP[whole];
+      hexagon.style.fill = FILLS[whole];
       texts[1].textContent = whole;
       for (const text of texts) text.style.fill = whole > 120 ? "#14181f" : "#fff";
     });

@@ -1,4 +1,5 @@
-"""three.js, as the installed trimesh brings it, with its licence: the page has it inside."""
+"""Scripts from elsewhere that the page has inside: three.js, as the installed trimesh brings it,
+with its licence; and the colours of the live view."""
 
 import zipfile
 from importlib.resources import files
@@ -7,7 +8,7 @@ from lumitip_fab.errors import OutputError
 from lumitip_fab.text import data_file
 
 _BEGIN, _END = "/**\n * @license\n", 'Object.defineProperty(t,"__esModule",{value:!0})}));'
-"""What the library begins with, and ends with, in the viewer of trimesh."""
+"""Begin and end of the library in the viewer of trimesh."""
 _RESOURCE = "resources/templates/viewer.zip"
 
 
@@ -28,3 +29,9 @@ def three_js() -> str:
             "constraints.txt is needed. Install trimesh with it."
         ) from error
     return f"/*\n{data_file('site/three_licence.txt')}*/\n{script}".replace("</", "<\\/")
+
+
+def colour_ramp() -> str:
+    """The colours of values in the live view, as a script that defines `RAMP`."""
+    script = files("lumitip").joinpath("view/static/ramp.js").read_text(encoding="utf-8")
+    return script.replace("export const ", "const ")

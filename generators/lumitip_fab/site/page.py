@@ -22,7 +22,7 @@ from lumitip_fab.site.boards import Followed, board_svg
 from lumitip_fab.site.cells import CellRecord, cell_records
 from lumitip_fab.site.checks import check_rows, figure
 from lumitip_fab.site.folder import WIRING, Folder, board_path
-from lumitip_fab.site.library import three_js
+from lumitip_fab.site.library import colour_ramp, three_js
 from lumitip_fab.site.masks import grid_svg, mask_svg
 from lumitip_fab.site.tables import (
     Figure,
@@ -101,7 +101,7 @@ def page(folder: Folder, figures: Sequence[Figure]) -> str:
         "figures": figure_table(figures),
         "files": "".join(file_lists(folder)),
         "style": data_file("site/page.css"),
-        "script": "\n".join(data_file(f"site/{name}") for name in SCRIPTS),
+        "script": "\n".join([colour_ramp(), *(data_file(f"site/{name}") for name in SCRIPTS)]),
         "data": _json(data),
         "three": three_js(),
         "scene": _scene(folder),
@@ -150,7 +150,7 @@ def _lead(folder: Folder) -> str:
 
 
 def _answers(folder: Folder, checks: Sequence[dict[str, Any]], parts: Sequence[Print]) -> list[str]:
-    """What a maker asks first."""
+    """Answers to the first questions of a maker."""
     design, (used, packs, stated) = folder.design, totals(folder)
     currency = stated.partition(",")[0]
     minutes = sum(part.minutes * part.number for part in parts)

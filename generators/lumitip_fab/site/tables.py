@@ -121,7 +121,7 @@ def bill_table(folder: Folder, targets: Targets) -> str:
 
 
 def totals(folder: Folder) -> tuple[float, float, str]:
-    """What one pair uses, what is to be bought in packs, and the currency with its trust.
+    """Price of one pair, price of whole packs, and the currency with its level of trust.
 
     Raises:
         OutputError: if a table has no sum.

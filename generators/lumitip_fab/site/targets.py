@@ -54,7 +54,7 @@ class Targets:
         return [name for name in once if name.partition("@")[0] in self._panels]
 
     def of_file(self, path: str) -> list[str]:
-        """What a file makes."""
+        """Targets of a file: the part or board that it makes."""
         return self._shown(self._of_file(path))
 
     def _of_file(self, path: str) -> Iterator[str]:
@@ -90,7 +90,7 @@ class Targets:
             yield _OF_BREAKOUT if name == "breakout" else f"{name}.board"
 
     def of_measurement(self, subject: str, note: str) -> list[str]:
-        """What a check measured: parts and bodies that it names, and what its file makes."""
+        """Targets of a measurement: parts and bodies that it names, and those of its file."""
         file = re.split(r"[:\s]", subject, maxsplit=1)[0]
         rest = f"{subject[len(file) :]} {note}"
         found = _NODE.findall(f"{rest} ")

@@ -10,6 +10,7 @@ import numpy as np
 import tomli_w
 
 from lumitip_fab.config.load import Input, written
+from lumitip_fab.explore.picture import pictures
 from lumitip_fab.explore.vary import Changes
 from lumitip_fab.paths import design_folder, packaged_design
 from lumitip_fab.pipeline.manifest import write_file
@@ -18,7 +19,7 @@ from lumitip_fab.solve.judge import FIGURES
 from lumitip_fab.solve.study import Point, Study, summary
 from lumitip_fab.text import LONGEST
 
-_DOTS_PER_INCH = 150
+_SIZE_IN = (9.0, 4.2)
 _BASE, _BEST = "#888888", "#1f6fb2"
 _SECTOR_DEG = 15.0
 
@@ -36,7 +37,7 @@ def write(found: Study, folder: Path) -> list[Path]:
     files |= _catalogue(found.task.base)
     files["study.json"] = (json.dumps(summary(found), indent=1, ensure_ascii=False) + "\n").encode()
     files["front.csv"] = _front(found)
-    files |= pictures(found)
+    files |= _drawn(found)
     for name, data in files.items():
         write_file(folder / name, data)
     for old in set(folder.glob("point-*.toml")) - {folder / name for name in files}:
@@ -88,25 +89,15 @@ def _front(found: Study) -> bytes:
     return text.getvalue().encode()
 
 
-def pictures(found: Study) -> dict[str, bytes]:
+def _drawn(found: Study) -> dict[str, bytes]:
     """`front` and `directions`, as SVG and PNG."""
-    from matplotlib import rc_context
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    files = {}
-    for name, draw, size in (
-        ("front", _draw_front, (9.0, 4.2)),
-        ("directions", _draw_directions, (9.0, 4.2)),
-    ):
-        figure = Figure(figsize=size, layout="constrained")
-        FigureCanvasAgg(figure)
+    files: dict[str, bytes] = {}
+    for name, draw in (("front", _draw_front), ("directions", _draw_directions)):
+        figure = Figure(figsize=_SIZE_IN, layout="constrained")
         draw(found, figure)
-        with rc_context({"svg.hashsalt": name, "svg.fonttype": "none"}):
-            for kind, metadata in (("svg", {"Date": None}), ("png", {"Software": None})):
-                data = io.BytesIO()
-                figure.savefig(data, format=kind, metadata=metadata, dpi=_DOTS_PER_INCH)
-                files[f"{name}.{kind}"] = data.getvalue()
+        files |= pictures(figure, name)
     return files
 
 
@@ -145,7 +136,7 @@ def _draw_directions(found: Study, figure: Any) -> None:
             if not rows.size:
                 continue
             angles = np.resize(point.expected.directions_deg, len(rows))
-            at, error = by_direction(angles, rows[:, 0])
+            at, error = _by_direction(angles, rows[:, 0])
             axis.plot(at, error, color=colour, marker="o", ms=4, label=point.name)
         axis.set_title(kind)
         axis.set_xlabel("direction of the line (°), 0 is across the finger")
@@ -156,7 +147,7 @@ def _draw_directions(found: Study, figure: Any) -> None:
     axes[0].legend(frameon=False)
 
 
-def by_direction(angles_deg: Any, errors: Any) -> tuple[Any, Any]:
+def _by_direction(angles_deg: Any, errors: Any) -> tuple[Any, Any]:
     """Middles of sectors of direction (degrees), and the rms error in each."""
     sector = np.round(np.asarray(angles_deg) / _SECTOR_DEG).astype(int)
     middles = np.unique(sector)

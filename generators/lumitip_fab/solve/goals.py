@@ -230,7 +230,7 @@ def _values(spec: Any) -> tuple[Any, ...] | str:
     if not isinstance(spec, dict) or spec.keys() != {"from", "to", "step"}:
         return f"is {brief(spec)}; a list of values or {_RANGE} is needed"
     low, high, step = (spec[name] for name in ("from", "to", "step"))
-    if not all(_is_number(v) for v in (low, high, step)):
+    if not all(is_number(v) for v in (low, high, step)):
         return f"is {brief(spec)}; {_RANGE} is needed in numbers"
     if not low < high or not step > 0 or (high - low) / step >= MOST_VALUES:
         return (
@@ -245,10 +245,10 @@ def _as_numbers_of(base: Input, field: str, values: tuple[Any, ...]) -> tuple[An
     """Numbers in the type of the field, so that 4 and 4.0 are one value."""
     value = base.value(field)
     if isinstance(value, float):
-        return tuple(float(v) if isinstance(v, int) and _is_number(v) else v for v in values)
+        return tuple(float(v) if isinstance(v, int) and is_number(v) else v for v in values)
     return values
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
     """Whether a value of TOML is a finite number of a size that a design can have."""
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < MOST

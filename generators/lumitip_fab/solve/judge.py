@@ -1,6 +1,5 @@
 """Figures of one design of a search, in any process; nothing is built."""
 
-import hashlib
 import math
 from dataclasses import dataclass
 
@@ -11,9 +10,8 @@ from lumitip.twin import Model
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive import resolve
 from lumitip_fab.design import Design
-from lumitip_fab.design.encoding import canonical
 from lumitip_fab.errors import InputError
-from lumitip_fab.explore.evaluate import Record, cost
+from lumitip_fab.explore.evaluate import Record, cost, key_of, rounded
 from lumitip_fab.explore.vary import Changes
 from lumitip_fab.pipeline.fingerprint import code_hash
 from lumitip_fab.solve.goals import Limits, Targets, Task
@@ -34,7 +32,6 @@ FIGURES = (
 """Figures of a design; `error` is the largest of the errors, each in units of its goal."""
 OBJECTIVES = ("error", "cost", "current_ma")
 """Figures of the Pareto front; less is better."""
-_DIGITS = 5
 MOST_EXPOSURE = 1.3
 """Beyond it free cells saturate, and thin shadows vanish."""
 
@@ -55,17 +52,8 @@ class Job:
     def of(cls, task: Task, changes: Changes, base_drive: float) -> "Job":
         """The job of a design of a task."""
         config = task.design(changes)
-        inputs = [
-            config.parameters.model_dump(),
-            sorted(config.automatic),
-            {field: part.model_dump() for field, part in config.parts_by_field().items()},
-            config.catalogue.prices.model_dump(),
-            task.targets.model_dump(),
-            base_drive,
-            code_hash("explore", "solve"),
-            np.__version__,
-        ]
-        key = hashlib.sha256(canonical(inputs).encode()).hexdigest()
+        prices, code = config.catalogue.prices, code_hash("explore", "solve")
+        key = key_of(config, prices, task.targets.model_dump(), base_drive, code)
         return cls(config, changes, task.targets, base_drive, key)
 
 
@@ -115,8 +103,3 @@ def excesses(figures: dict[str, float], limits: Limits) -> tuple[float, ...]:
         *(figures[n] / getattr(limits, n) - 1.0 for n in most if getattr(limits, n) < math.inf),
         *(1.0 - figures[n] / getattr(limits, n) for n in least if getattr(limits, n) > 0.0),
     )
-
-
-def rounded(value: float) -> float:
-    """A figure with as many digits as are the same on any machine."""
-    return float(f"{value:.{_DIGITS}g}")

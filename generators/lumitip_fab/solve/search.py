@@ -4,7 +4,6 @@ import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from scipy.stats import qmc
@@ -13,10 +12,11 @@ from lumitip.errors import how_to_install
 from lumitip_fab.derive import derive
 from lumitip_fab.errors import BuildError, InputError, Problem
 from lumitip_fab.explore.evaluate import Journal, Record
+from lumitip_fab.explore.front import undominated
 from lumitip_fab.explore.pool import pool
 from lumitip_fab.explore.vary import Changes
 from lumitip_fab.pipeline.build import locked
-from lumitip_fab.solve.goals import Task
+from lumitip_fab.solve.goals import Task, is_number
 from lumitip_fab.solve.judge import OBJECTIVES, Job, drive, excesses, judge
 
 FEWEST, POPULATION = 8, 24
@@ -67,8 +67,7 @@ class Search:
         """Allowed designs of which no other is as good in all objectives and better in one, the
         least error first; of equal designs the first."""
         allowed = {one.objectives: one for one in reversed(self.designs) if one.allowed}
-        best = [own for own in allowed if not any(_better(other, own) for other in allowed)]
-        return tuple(allowed[own] for own in sorted(best))
+        return tuple(allowed[own] for own in sorted(undominated(allowed)))
 
 
 def search(
@@ -94,9 +93,9 @@ def search(
         _require_pymoo()
     base_drive = drive(derive(task.base))
     with locked(out), Journal(out) as journal, pool(judge, POPULATION, scheduler) as evaluated:
+        most = min(designs, task.designs)
         judges = _Judges(task, base_drive, journal, evaluated)
         judges.progress = lambda: progress(min(len(judges.designs), most), most)
-        most = min(designs, task.designs)
         base = judges.judged([()])[0]
         if base.refused:
             raise InputError([Problem("base", 0, "", text) for text in base.refused])
@@ -165,10 +164,6 @@ def _judged(task: Task, job: Job, record: Record) -> Judged:
     return Judged(job.changes, columns, figures, tuple(record.get("refused", ())), excess)
 
 
-def _better(other: tuple[float, ...], own: tuple[float, ...]) -> bool:
-    return other != own and all(o <= m for o, m in zip(other, own, strict=True))
-
-
 def _generations(
     task: Task, designs: int, seed: int, judges: Callable[[Sequence[Point]], list[Judged]]
 ) -> Iterator[None]:
@@ -182,7 +177,7 @@ def _generations(
     from pymoo.problems.static import StaticProblem
 
     sizes = [len(axis.values) for axis in task.axes]
-    ordered = [_is_number(axis.values[0]) for axis in task.axes]
+    ordered = [is_number(axis.values[0]) for axis in task.axes]
     names = [str(n) for n in range(len(sizes))]
     variables = {
         name: Integer(bounds=(0, n - 1)) if is_ordered else Choice(options=list(range(n)))
@@ -210,7 +205,3 @@ def _generations(
         Evaluator().eval(StaticProblem(problem, F=values, G=beyond), asked)
         algorithm.tell(infills=asked)
         yield
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)

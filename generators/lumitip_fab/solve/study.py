@@ -13,10 +13,10 @@ from lumitip.tasks.bench import workers
 from lumitip_fab.derive import resolve
 from lumitip_fab.errors import BuildError
 from lumitip_fab.explore.accuracy import Sample, gross, rms
+from lumitip_fab.explore.evaluate import rounded
 from lumitip_fab.solve import confirm
 from lumitip_fab.solve.goals import Task
 from lumitip_fab.solve.information import Expected, expected
-from lumitip_fab.solve.judge import rounded
 from lumitip_fab.solve.search import Judged, Progress, Search, search
 
 
@@ -25,7 +25,7 @@ class Options:
     """Settings of a study."""
 
     designs: int = 600
-    """Judged at most."""
+    """Judged, about."""
     points: int = 5
     """Of the front, that the estimator tries."""
     seed: int = 0
