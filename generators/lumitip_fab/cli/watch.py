@@ -1,6 +1,7 @@
 """`lumitip-fab watch`: build again when the parameter file, a base or the catalogue is saved."""
 
 import argparse
+import contextlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -17,12 +18,15 @@ from lumitip_fab.design.encoding import encoded
 from lumitip_fab.errors import FabError
 from lumitip_fab.paths import design_folder
 
+_LONGEST_WAIT_MS = 200
+
 
 def run(options: argparse.Namespace) -> int:
     """Watch the file, which must exist."""
     if not options.file.is_file():
         read_toml(options.file, shown_path(options.file))  # raises
-    watch(options.file, options.out, OUT)
+    with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C is how one stops it
+        watch(options.file, options.out, OUT)
     return 0
 
 
@@ -35,11 +39,23 @@ def watch(file: Path, out: Path, console: Console) -> None:
         out: the output folder.
         console: prints the changed values and files.
     """
-    known = _rebuilt(file, out, {}, console)
-    console.print(f"watching {design_folder(file)}; stop with Ctrl-C")
     folder = design_folder(file)
-    for _ in changes(folder, raise_interrupt=False, watch_filter=_input_files(out)):
-        known = _rebuilt(file, out, known, console)
+    known: dict[str, Any] = {}
+    watching = False
+    # The first set, empty or not, comes when the watcher runs: what is saved from then on, during
+    # the first build too, is seen.
+    for saved in changes(
+        folder,
+        raise_interrupt=False,
+        watch_filter=_input_files(out),
+        yield_on_timeout=True,
+        rust_timeout=_LONGEST_WAIT_MS,
+    ):
+        if saved or not watching:
+            known = _rebuilt(file, out, known, console)
+        if not watching:
+            console.print(f"watching {folder}; stop with Ctrl-C")
+            watching = True
 
 
 def _input_files(out: Path) -> Callable[[Any, str], bool]:
