@@ -118,7 +118,7 @@ class RealLight:
 
 def _split(pairs: Pairs) -> tuple[Pairs, Pairs]:
     """The pairs of each cell with its own LED, and with the others."""
-    facing = np.array([x == y == 0.0 for _, x, y in pairs.kinds])[pairs.kind]
+    facing = np.array([x == y == 0.0 for _, x, y, _ in pairs.kinds])[pairs.kind]
     own, others = (
         Pairs(pairs.cells, pairs.cell[some], pairs.kind[some], pairs.kinds)
         for some in (facing, ~facing)

@@ -129,6 +129,7 @@ CHANGES: dict[str, Any] = {
     "mask.filament": "TPU 98A",
     "mask.layers": 1,
     "mask.hole_mm": 2.4,
+    "mask.cell_holes_mm": (2.0, *(2.5,) * 30, 3.0),
     "mask.hole_shape": "circle",
     "mask.measured_ruler_mm": (99.0, 100.0),
     "mask.allowance_mm": 0.8,

@@ -6,7 +6,7 @@ It is all that the robot side needs of a design. `lumitip-fab` writes it.
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -36,10 +36,11 @@ class Cell:
 
 @dataclass(frozen=True)
 class Optics:
-    """The optical path between an LED and its photodetector, equal for all cells."""
+    """The optical path between an LED and its photodetector."""
 
     hole_mm: float
-    """Mask aperture: across flats of a hexagon, diameter of a circle (mm)."""
+    """Mask aperture: across flats of a hexagon, diameter of a circle (mm). Single cells may have
+    another, see `Layout.hole_share`."""
     hole_shape: str
     """`"hexagon"` (flats face the tip) or `"circle"`."""
     emitter_depth_mm: float
@@ -90,15 +91,26 @@ class Layout:
     """Distance between neighbouring cells (mm)."""
     optics: Optics
     schema_version: int = SCHEMA_VERSION
+    hole_share: Floats = field(default_factory=lambda: np.ones(0))
+    """Aperture of each cell in both masks, relative to `optics.hole_mm`, shape `(cells,)`; 1 for
+    all where nothing else is given."""
 
     def __post_init__(self) -> None:
-        for name in _ARRAYS:
+        if not np.size(self.hole_share):
+            object.__setattr__(self, "hole_share", np.ones(len(self)))
+        for name in (*_ARRAYS, "hole_share"):
             array = np.array(getattr(self, name))
             array.flags.writeable = False
             object.__setattr__(self, name, array)
 
     def __len__(self) -> int:
         return int(self.x_mm.size)
+
+    @property
+    def hole_mm(self) -> Floats:
+        """Aperture of each cell in both masks, shape `(cells,)` (mm)."""
+        sizes: Floats = self.hole_share * self.optics.hole_mm
+        return sizes
 
     def __repr__(self) -> str:
         return (
@@ -137,6 +149,8 @@ class Layout:
                 for k, v in asdict(self.optics).items()
             },
         }
+        if (self.hole_share != 1.0).any():
+            record["hole_mm"] = _plain(self.hole_mm)
         lines = (
             f"{json.dumps(k)}: {json.dumps(v, sort_keys=True)}" for k, v in sorted(record.items())
         )
@@ -208,11 +222,13 @@ def _read(record: Any) -> Layout:
     pins = record.get("adc_pin")
     if not isinstance(pins, list) or len(pins) != cells or not all(type(p) is str for p in pins):
         raise LayoutError(f"adc_pin: a list of {cells} pin names is needed")
+    optics = _optics(record)
     layout = Layout(
         **arrays,
         adc_pin=np.array(pins),
         pitch_mm=_number(record, "pitch_mm"),
-        optics=_optics(record),
+        optics=optics,
+        hole_share=_hole_share(record, optics, cells),
     )
     if layout.design_hash != record.get("design_hash"):
         raise LayoutError(
@@ -260,6 +276,16 @@ def _whole(
         what = "pairs of cell indices" if len(shape) == 2 else f"{shape[0]} whole numbers"
         raise LayoutError(f"{name}: a list of {what} from 0 to {below - 1} is needed")
     return np.array(values, dtype=np.int64).reshape([-1 if n is None else n for n in shape])
+
+
+def _hole_share(record: Mapping[str, Any], optics: Optics, cells: int) -> Floats:
+    if "hole_mm" not in record:
+        return np.ones(cells)
+    sizes = _numbers(record, "hole_mm", cells)
+    if sizes.min() <= 0.0 or optics.hole_mm <= 0.0:
+        raise LayoutError("hole_mm: sizes above 0 are needed, in optics too")
+    shares: Floats = sizes / optics.hole_mm
+    return shares
 
 
 def _optics(record: Mapping[str, Any]) -> Optics:

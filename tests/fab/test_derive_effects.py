@@ -118,6 +118,7 @@ def test_a_changed_limit_changes_the_parameters_hash_alone(
         {"controller.name": "Renamed", "name": "Renamed", "revision": "Z"},
         {"mask.measured_ruler_mm": (99.2, 100.4)},
         {"mask.hole_mm": 2.0, "mask.hole_shape": "circle"},
+        {"mask.cell_holes_mm": (2.0, *(2.5,) * 31)},
         {"mask.film": "other"},
         {"mould.silicone": "Sylgard 184", "emitter.current_ma": 10.0},
         {"stack.silicone_mm": 1.6, "receiver.pull_up_ohm": 1e5},

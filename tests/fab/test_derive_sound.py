@@ -124,7 +124,7 @@ def _of_connector(design: Design, finger: Finger) -> Iterator[str]:
         b - a < finger.connector.pad_mm + 0.2 for (a, _), (b, _) in pairwise(finger.connector.pads)
     ):
         yield "pads touch"
-    lowest = min(y for _, y in finger.cells) - design.mask.hole_mm / 2
+    lowest = min(y for _, y in finger.cells) - design.mask.holes_mm[0] / 2
     if lowest - finger.window.y_max_mm < 0.4 - NOISE_MM:
         yield "an aperture meets the window"
     if finger.notch.y_min_mm > design.outline.end_y_mm + NOISE_MM:

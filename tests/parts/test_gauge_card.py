@@ -56,7 +56,7 @@ def test_the_numbers_of_the_published_design(card: GaugeCard) -> None:
 
 
 def test_the_window_is_clear_of_the_holes_of_both_fingers(design: Design, card: GaugeCard) -> None:
-    window, radius = card.window, design.mask.hole_mm / np.sqrt(3)
+    window, radius = card.window, max(design.mask.holes_mm) / np.sqrt(3)
     for finger in design.fingers:
         for x, y in finger.cells:
             assert window.x_min_mm + 1.99 < x - radius and x + radius < window.x_max_mm - 1.99

@@ -1,5 +1,7 @@
 """Frames of built fingers against the twin, and what each mistake must do to them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -74,6 +76,17 @@ def test_a_mistake_that_the_twin_knows_gives_the_twins_frame(
     if deviation and "silicone" not in deviation:
         off = 255.0 * (found - expected(Twin(layout, drawing), lines))
         assert np.sqrt(np.mean(off**2)) > 2.0 * np.sqrt(np.mean(away**2)), "the mistake shows"
+
+
+def test_cells_with_holes_of_their_own_give_the_twins_frame(layout: Layout, exact: Draws) -> None:
+    sizes = np.random.default_rng(3).uniform(0.7, 1.3, len(layout)).round(2)
+    other = replace(layout, hole_share=sizes)
+    model = Model.from_layout(other)
+    found = shares(other, model, exact, EDGES)
+    away = 255.0 * (found - expected(Twin(other, model), EDGES))
+    alike = 255.0 * (found - expected(Twin(layout, model), EDGES))
+    assert np.sqrt(np.mean(away**2)) < 1.2
+    assert np.sqrt(np.mean(alike**2)) > 2.0 * np.sqrt(np.mean(away**2)), "the sizes show"
 
 
 def test_a_whole_fingertip_beside_its_place_sees_the_line_on_the_other_side(

@@ -67,7 +67,7 @@ class Placed(Subject):
     def apertures(self) -> Any:
         """The holes of all cells as circles round them, shape `(cells,)`."""
         centres = shapely.points(self.layout.x_mm, self.layout.y_mm)
-        return shapely.buffer(centres, self.layout.optics.hole_mm / math.sqrt(3))
+        return shapely.buffer(centres, self.layout.hole_mm / math.sqrt(3))
 
     @cached_property
     def around(self) -> Any:

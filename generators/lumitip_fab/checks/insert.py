@@ -110,7 +110,7 @@ def _size_mm(film: Any) -> solids.Vectors:
 
 def measure_covers(laid: Laid) -> Iterator[Measurement]:
     """The film beyond every aperture of the finger."""
-    reach = laid.design.mask.hole_mm / math.sqrt(3)
+    reach = np.array(laid.design.mask.holes_mm) / math.sqrt(3)
     cells = shapely.points(np.array(laid.finger.cells))
     to_edge = shapely.distance(cells, laid.film.exterior)
     inside = shapely.contains(laid.film, cells)

@@ -13,7 +13,7 @@ from ezdxf import units
 from scipy.spatial import cKDTree
 
 from lumitip_fab.checks.mask_drawings import Film, read_film
-from lumitip_fab.checks.mask_holes import apart, edges_apart
+from lumitip_fab.checks.mask_holes import apart, edges_apart, sizes_at
 from lumitip_fab.checks.readers import MALFORMED
 from lumitip_fab.checks.readers.mask_page import PageError, Points
 from lumitip_fab.checks.result import Measure, Measurement, Subject, measured, unreadable
@@ -106,7 +106,8 @@ def measure_holes(read: Cut) -> Iterator[Measurement]:
     yield read.figure("count", len(read.drawn.centres), len(cells), len(cells), "circles")
     far = cKDTree(read.drawn.centres).query(cells)[0].max() if len(read.drawn.centres) else math.nan
     yield read.figure("position", far, 0, PLACE_MM, note="worst cell to its circle")
-    yield read.near("size", read.drawn.diameters_mm, read.design.mask.hole_mm, PLACE_MM, "diameter")
+    wanted = sizes_at(read.drawn.centres, cells, read.design.mask)
+    yield read.near("size", read.drawn.diameters_mm, wanted, PLACE_MM, "diameter")
 
 
 def measure_web(read: Cut) -> Iterator[Measurement]:

@@ -5,10 +5,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from lumitip_fab.checks.readers.mask_page import Page, PageError, Points, Subpath
 from lumitip_fab.design import Mask
 
+Sizes = NDArray[np.float64]
 _MARKS = 4
 
 
@@ -31,6 +34,12 @@ class Placed:
         """A run of the sheet in the sensor frame."""
         corners, controls = self.points(on_sheet.corners), self.points(on_sheet.controls)
         return replace(on_sheet, corners=corners, controls=controls)
+
+
+def sizes_at(centres: Points, cells: Points, mask: Mask) -> Sizes:
+    """Aperture of the cell nearest to each place, shape `(places,)` (mm)."""
+    sizes = np.array(mask.holes_mm)
+    return np.asarray(sizes[cKDTree(cells).query(centres)[1]]) if len(centres) else np.zeros(0)
 
 
 def registration_of(page: Page) -> Points:

@@ -11,7 +11,7 @@ import shapely
 from numpy.typing import NDArray
 
 from lumitip_fab.checks.mask_flaps import Flap, side_mm
-from lumitip_fab.checks.mask_holes import Black, Placed, apart, edges_apart
+from lumitip_fab.checks.mask_holes import Black, Placed, apart, edges_apart, sizes_at
 from lumitip_fab.checks.readers.mask_page import Page, PageError, Painted, Points
 from lumitip_fab.checks.result import Measurement, Subject, unreadable
 from lumitip_fab.design import Box, Design, Finger, Mask
@@ -69,8 +69,8 @@ def measure_black(
     yield Measurement("mask.count", subject, count, len(cells), len(cells), "apertures")
     worst = apart(black.centres, cells)
     yield Measurement("mask.position", subject, worst, 0, PLACE_MM, "mm", "worst aperture or cell")
-    off = float(np.abs(black.size_mm - mask.hole_mm).max())
-    yield Measurement("mask.size", subject, off, 0, PLACE_MM, "mm", f"off {mask.hole_mm:g}")
+    off = float(np.abs(black.size_mm - sizes_at(black.centres, cells, mask)).max())
+    yield Measurement("mask.size", subject, off, 0, PLACE_MM, "mm", f"off {mask.sizes_text}")
     wrong = black.round_ != (mask.hole_shape == "circle")
     shape = math.inf if wrong else float(black.misshape_mm.max())
     yield Measurement("mask.shape", subject, shape, 0, PLACE_MM, "mm", f"off a {mask.hole_shape}")

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks.mask_drawings import Film, read_film
-from lumitip_fab.checks.mask_holes import edges_apart
+from lumitip_fab.checks.mask_holes import edges_apart, sizes_at
 from lumitip_fab.checks.printed import measure_closed, three_mf_mm
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.mask_page import PageError
@@ -110,7 +110,8 @@ def measure_holes(read: PrintedMask) -> Iterator[Measurement]:
         by_area = [math.sqrt(h.area / share) for h in holes]
         narrow = [2 * h.exterior.distance(h.centroid) for h in holes]
         across = "diameter" if round_ else "across flats"
-        yield read.near("size", by_area + narrow, mask.sheet.hole_mm, HOLE_MM, across, at=at)
+        wanted = np.tile(sizes_at(centres, cells, mask), 2) + mask.sheet.hole_loss_mm
+        yield read.near("size", by_area + narrow, wanted, HOLE_MM, across, at=at)
 
 
 def measure_web(read: PrintedMask) -> Iterator[Measurement]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from shapely.errors import ShapelyError
 
 from lumitip_fab.design import Design
@@ -170,15 +170,22 @@ class Subject:
         self,
         check: str,
         measured: object,
-        wanted: float,
+        wanted: ArrayLike,
         by: float,
         note: str = "",
         unit: str = "mm",
         at: str = "",
     ) -> Measurement:
-        """The value that strays farthest from what is wanted; NaN if one could not be taken."""
-        worst = farthest(np.atleast_1d(np.asarray(measured, dtype=np.float64)), wanted)
-        return self.figure(check, worst, wanted - by, wanted + by, unit, note, at)
+        """The value that strays farthest from what is wanted, of all or of each; NaN if one could
+        not be taken."""
+        values = np.atleast_1d(np.asarray(measured, dtype=np.float64))
+        every = np.asarray(wanted, dtype=np.float64)
+        aims = np.broadcast_to(every, values.shape)
+        worst, aim = math.nan, float(every.mean())
+        if values.size and np.isfinite(values).all():
+            at_worst = int(np.abs(values - aims).argmax())
+            worst, aim = float(values[at_worst]), float(aims[at_worst])
+        return self.figure(check, worst, aim - by, aim + by, unit, note, at)
 
     def clear(self, check: str, found: Clearance) -> Measurement:
         """Room round a fastener."""

@@ -46,7 +46,7 @@ def _limits(subject: str, found: Loads, design: Design) -> Iterator[Measurement]
     limit = design.strength
     load = f"{limit.rated_force_n:g} N where the fingers touch first; an estimate"
     aside = f"{limit.rated_force_n:g} N on the cells {found.aside_mm:.1f} mm beside the middle"
-    most_mm = limit.offset_share * design.mask.hole_mm / 2
+    most_mm = limit.offset_share * min(design.mask.holes_mm) / 2
     at = f"{found.layers_h_mm:.0f} mm over the mount plane, {load}"
     for check, value, low, high, unit, note in (
         ("layers", found.safety, limit.safety, math.inf, "times the load", at),

@@ -106,7 +106,7 @@ def _outside(built: Manifest, design: Design) -> Iterator[Row]:
 
 def _fingers(out: Path, design: Design) -> Iterator[Row]:
     """What the rated force does to the weaker finger."""
-    limit, half_mm = design.strength, design.mask.hole_mm / 2
+    limit, half_mm = design.strength, min(design.mask.holes_mm) / 2
     every = [finger_loads(out, design, finger) for finger in design.fingers]
     found = min(every, key=lambda each: each.safety)
     glue = limit.glue_mpa / found.glue_mpa

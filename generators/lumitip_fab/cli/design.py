@@ -74,18 +74,19 @@ def print_study(found: Study, console: Console) -> None:
         title=f"{len(search.designs)} designs judged ({how}), {search.evaluated} of them now",
         caption=f"errors: expected / of the estimator ({EVIDENCE}); rms over all grasps",
     )
-    fields = [axis.field for axis in found.task.axes]
+    some = found.task.joined(tuple((axis.field, axis.values[0]) for axis in found.task.axes))
+    fields = [field for field, _ in some]
     for heading in ("", *fields, "edge mm", "edge °", "cable mm", "cable °", "cost", "LEDs mA"):
         table.add_column(heading, justify="right")
     for point in found.points:
-        values, figures = dict(point.judged.changes), point.judged.figures
+        values, figures = dict(found.task.joined(point.judged.changes)), point.judged.figures
         errors = (
             f"{figures[name]:.3g} / {point.confirmed[name]:.3g}" if name in figures else ""
             for name in ("edge_mm", "edge_deg", "cable_mm", "cable_deg")
         )
         table.add_row(
             point.name,
-            *(f"{values.get(field, _of_base(found.task.base, field))}" for field in fields),
+            *(_brief(values.get(field, _of_base(found.task.base, field))) for field in fields),
             *errors,
             f"{figures['cost']:.2f}",
             f"{figures['current_ma']:.1f}",
@@ -116,6 +117,12 @@ def print_study(found: Study, console: Console) -> None:
 
 def _of_base(base: Input, field: str) -> object:
     return "auto" if field in base.automatic else base.value(field)
+
+
+def _brief(value: object) -> str:
+    """A value; of a size for each cell, the smallest and the largest."""
+    sizes = [of for of in value if isinstance(of, float)] if isinstance(value, tuple) else []
+    return f"{min(sizes)} … {max(sizes)}" if sizes else f"{value}"
 
 
 def _listed(values: tuple[float, ...]) -> str:

@@ -278,6 +278,9 @@ class Mask(Strict):
     grooves that leave one."""
     hole_mm: float = Field(ge=0.3, le=20)
     """Aperture above each cell: across flats of a hexagon, diameter of a circle (mm)."""
+    cell_holes_mm: tuple[Annotated[float, Field(ge=0.3, le=20)], ...]
+    """Aperture of each cell, in place of `hole_mm`, where they differ: column by column from the
+    left of the receiver, in each from the tip down, as in frames. Empty: all have `hole_mm`."""
     hole_shape: Literal["hexagon", "circle"]
     """Shape of the apertures; flats of hexagons face the tip."""
     measured_ruler_mm: tuple[
@@ -289,3 +292,25 @@ class Mask(Strict):
     """Finger outline to the first fold, for the mask's bend (mm)."""
     flap_mm: float = Field(ge=3, le=40)
     """Length of the fold flaps, where coupling and notch leave room (mm)."""
+
+    def holes_mm(self, cells: int) -> tuple[float, ...]:
+        """Aperture of each of so many cells."""
+        own = self.cell_holes_mm
+        return own if len(own) == cells else (self.hole_mm,) * cells
+
+    @property
+    def extremes_mm(self) -> tuple[float, float]:
+        """The smallest and the largest aperture."""
+        sizes = self.cell_holes_mm or (self.hole_mm,)
+        return min(sizes), max(sizes)
+
+    @property
+    def holes_field(self) -> str:
+        """The field that the apertures come from."""
+        return "mask.cell_holes_mm" if self.cell_holes_mm else "mask.hole_mm"
+
+    @property
+    def holes_text(self) -> str:
+        """Its value, for messages."""
+        least, most = self.extremes_mm
+        return f"has {least:g} to {most:g}" if self.cell_holes_mm else f"is {self.hole_mm:g}"

@@ -3,6 +3,8 @@
 import hashlib
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from lumitip.layout import Layout, Optics
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import boards
@@ -153,6 +155,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
         adc_pin=wiring.pins_of(mux, muxing.adc_pins),
         pitch_mm=p.grid.pitch_mm,
         optics=optics,
+        hole_share=np.array(p.mask.holes_mm(len(cells))) / p.mask.hole_mm,
     )
     return round_trip(
         Design(

@@ -26,8 +26,8 @@ class Sheet:
     layers: int
     layer_mm: float
     line_mm: float
-    hole_mm: float
-    """Of a hole as drawn: wider than the aperture by what the print loses."""
+    hole_loss_mm: float
+    """By what a hole is drawn wider than its aperture, since the print loses it."""
     fold_mm: float
     """Width of the groove along each fold; 0 without grooves, in a single layer."""
     letter: bool
@@ -59,7 +59,8 @@ class Mask:
 
     route: str
     """`"film"`, `"tpu"` or `"cut"`."""
-    hole_mm: float
+    holes_mm: tuple[float, ...]
+    """Aperture of each cell, in frame order: across flats, or the diameter."""
     hole_shape: str
     """Of film and printed sheet; a plotter cuts circles."""
     allowance_mm: float
@@ -76,6 +77,12 @@ class Mask:
     """A piece of the mask's material without holes that covers all cells of the receiver."""
     shift: MaskShift | None = None
     """How far both masks may be off their fingers; none where it was not computed."""
+
+    @property
+    def sizes_text(self) -> str:
+        """Size of its apertures, or the smallest and the largest (mm)."""
+        least, most = min(self.holes_mm), max(self.holes_mm)
+        return f"{least:g}" if least == most else f"{least:g} to {most:g}"
 
     @property
     def material(self) -> str:

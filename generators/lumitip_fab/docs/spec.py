@@ -273,6 +273,9 @@ def _further(design: Design) -> dict[str, Any]:
         "before": f"coupling {system.coupling_mm:g}, flange {added:g}, " if design.flanges else "",
         "skin": (mount.stroke_mm - closing.max_opening_mm) / 2,
         "shape": shape,
+        "holes_field": "mask.cell_holes_mm"
+        if len(set(design.mask.holes_mm)) > 1
+        else "mask.hole_mm",
         "across": "diameter" if shape == "circle" else "across flats",
         "flex_lean": " and flex.lean_deg" if design.interfaces else "",
         "trusted": _trusted(design),

@@ -133,7 +133,7 @@ def _values(design: Design, facts: Facts, name: str) -> dict[str, object]:
         "across": across,
         "up": up,
         "count": facts["apertures"],
-        "hole_mm": mask.hole_mm,
+        "hole_mm": mask.sizes_text,
         "wide_mm": facts["wide_mm"],
         "long_mm": facts["long_mm"],
         "side_mm": stack.plate_mm + stack.cover_mm,

@@ -96,7 +96,7 @@ def make_artwork(finished: Finished, mask: Mask) -> Artwork:
         name=finger.name.upper(),
         black=_polygon([(x, y) for x, y in grown(outline, mask.allowance_mm).tolist()]),
         window=_rectangle(finger.window),
-        apertures=tuple(aperture(centre, mask.hole_mm) for centre in finger.cells),
+        apertures=tuple(map(aperture, finger.cells, mask.holes_mm)),
         flaps=flaps,
         cut=_polygon([corner for flap in flaps for corner in flap.corners]),
         mark=_letter(mask.mark),

@@ -159,8 +159,8 @@ def cut_drawing(artwork: Artwork, mask: Mask) -> bytes:
     def draw(space: Modelspace) -> None:
         _closed(space, artwork.cut.corners, "CUT")
         _closed(space, artwork.window.corners, "WINDOW")
-        for path in artwork.apertures:
-            _circle(space, path, mask.hole_mm, "HOLES")
+        for path, size_mm in zip(artwork.apertures, mask.holes_mm, strict=True):
+            _circle(space, path, size_mm, "HOLES")
         for flap in artwork.flaps:
             _line(space, flap.fold, "FOLD")
 
@@ -188,9 +188,9 @@ def _film(space: Modelspace, artwork: Artwork) -> None:
 
 
 def _apertures(space: Modelspace, artwork: Artwork, mask: Mask) -> None:
-    for path in artwork.apertures:
+    for path, size_mm in zip(artwork.apertures, mask.holes_mm, strict=True):
         if mask.hole_shape == "circle":
-            _circle(space, path, mask.hole_mm, "APERTURES")
+            _circle(space, path, size_mm, "APERTURES")
         else:
             _closed(space, path.corners, "APERTURES")
 

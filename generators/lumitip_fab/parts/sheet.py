@@ -20,7 +20,8 @@ _ARC_STEPS = 12  # of a quarter circle: chords 3 µm off a hole of 2.5 mm
 def sheet_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     """STL and 3MF of a finger's sheet as it lies on the bed, outer face down."""
     sheet = design.mask.sheet
-    mask = replace(design.mask, hole_mm=sheet.hole_mm)
+    drawn = tuple(round(size + sheet.hole_loss_mm, 6) for size in design.mask.holes_mm)
+    mask = replace(design.mask, holes_mm=drawn)
     surface = sheet_mesh(artwork_of(design, finger, mask), mask.mark, sheet)
     path, bed = f"mask/{finger.name}_sheet", sheet_bed_to_sensor()
     facts = surface_facts(surface)

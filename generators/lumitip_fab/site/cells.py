@@ -139,14 +139,14 @@ class _Reader:
 
     def _light(self, index: int, notes: _Notes) -> tuple[str, ...]:
         """Place, LED and hole; the nets of the LED."""
-        layout, led = self.layout, self.leds[index]
+        layout, led, mask = self.layout, self.leds[index], self.design.mask
         notes.parts["led"] = f"emitter.{led.ref}"
         notes.rows += [
             ("Place", f"column {layout.column[index]}, row {layout.row[index]} from the tip"),
             ("x, y", f"{layout.x_mm[index]:.3f}, {layout.y_mm[index]:.3f} mm (receiver)"),
             ("LED", f"{led.ref}, {led.value}, emitter"),
             ("String", self._string(index)),
-            ("Hole", f"{self.design.mask.hole_mm:g} mm {self.design.mask.hole_shape}, both masks"),
+            ("Hole", f"{mask.holes_mm[index]:g} mm {mask.hole_shape}, both masks"),
         ]
         return tuple(f"emitter:{t.net}" for t in led.terminals if t.net != "GND")
 

@@ -64,7 +64,8 @@ def _values(task: Task, changes: Changes) -> Changes:
     """All values that differ from the base's file: fixed ones, those of the point, and columns
     that follow the pitch."""
     columns = list(task.design(changes).parameters.grid.columns)
-    return (*task.fixed, *changes, *((("grid.columns", columns),) if task.keep_size else ()))
+    own = task.joined(changes)
+    return (*task.fixed, *own, *((("grid.columns", columns),) if task.keep_size else ()))
 
 
 def _catalogue(base: Input) -> dict[str, bytes]:

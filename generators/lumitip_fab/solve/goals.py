@@ -1,7 +1,7 @@
 """The goals file of a search: goals, limits, the base design and the parameters that may move."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -15,11 +15,12 @@ from lumitip_fab.config.source import Source, flat, read_toml
 from lumitip_fab.errors import InputError, Problem
 from lumitip_fab.explore.run import without_price
 from lumitip_fab.explore.vary import Axis, Changes, changed, not_allowed
+from lumitip_fab.solve.holes import BY, FIELD, axis_names, joined
 from lumitip_fab.solve.information import POSE_SD, Grasps
 
 KEEP_SIZE = "keep_size"
 """Spec of `grid.columns`: they follow the pitch, so that the grid keeps its size."""
-COLUMNS = "grid.columns"
+COLUMNS, HOLE = "grid.columns", "mask.hole_mm"
 MOST = 1e9
 MOST_VALUES = 1000
 """Values of one parameter."""
@@ -126,7 +127,11 @@ class Task:
 
     def design(self, changes: Changes) -> Input:
         """The base with changed parameters."""
-        return changed(self.base, changes, self.keep_size)
+        return changed(self.base, self.joined(changes), self.keep_size)
+
+    def joined(self, changes: Changes) -> Changes:
+        """Changes by axis as changes of parameters."""
+        return joined(changes, self.base.parameters.grid.columns)
 
 
 def read_goals(path: Path) -> Task:
@@ -142,14 +147,14 @@ def read_goals(path: Path) -> Task:
         raise InputError(problems_of(error, GoalsFile, lambda _: source)) from error
     base = load(path.parent / file.base)
     fixed, faults = _fixed(source, base, file.fixed)
-    axes, more = _axes(source, base, file.vary)
+    task_base = base if faults else changed(base, fixed)
+    axes, more = _axes(source, task_base, file.vary)
     both = {field for field, _ in fixed} & {axis.field for axis in axes}
     faults += more + [
         _fault(source, f"vary.{field}", "is in [fixed] too; keep one of them") for field in both
     ]
     if faults:
         raise InputError(faults)
-    task_base = changed(base, fixed)
     if unpriced := without_price(task_base, axes):
         raise InputError(unpriced)
     keep_size = file.vary.get("grid", {}).get("columns") == KEEP_SIZE
@@ -209,6 +214,10 @@ def _axes(
                     f'is "{KEEP_SIZE}", but grid.pitch_mm does not vary. Vary it, or remove this.'
                 )
                 faults.append(_fault(source, name, text))
+        elif field == FIELD and isinstance(spec, dict) and "by" in spec:
+            more, problems = _grouped(base, spec, written.keys() & {COLUMNS, HOLE})
+            axes += more
+            faults += _placed(source, name, problems)
         elif isinstance(values := _values(spec), str):
             faults.append(_fault(source, name, values))
         else:
@@ -216,6 +225,29 @@ def _axes(
             faults += _placed(source, name, not_allowed(base, axis))
             axes.append(axis)
     return tuple(axes), faults
+
+
+def _grouped(
+    base: Input, spec: Mapping[str, Any], clash: Set[str]
+) -> tuple[list[Axis], list[Problem]]:
+    """An axis for each group of cells with apertures of one size.
+
+    Args:
+        base: the file, with its fixed values.
+        spec: a range, and `by`.
+        clash: fields that vary too, and must not.
+    """
+    values = _values({key: of for key, of in spec.items() if key != "by"})
+    texts = [f"has a size for each cell, so {field} cannot vary too" for field in sorted(clash)]
+    if spec["by"] not in BY:
+        texts.append(f"has by = {brief(spec['by'])}; one of {', '.join(map(brief, BY))} is needed")
+    if isinstance(values, str):
+        texts.append(values)
+    if texts or isinstance(values, str):
+        return [], [Problem("", 0, FIELD, text) for text in texts]
+    sizes = _as_numbers_of(base, HOLE, values)
+    names = axis_names(base.parameters.grid.columns, spec["by"])
+    return [Axis(name, sizes) for name in names], not_allowed(base, Axis(HOLE, sizes))
 
 
 def _placed(source: Source, name: str, problems: list[Problem]) -> Iterator[Problem]:

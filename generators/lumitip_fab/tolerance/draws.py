@@ -96,13 +96,13 @@ def built(layout: Layout, model: Model, draws: Draws, finger: int) -> Built:
     gaps = 0.5 * (model.gap_mm + of["gap"] + tilt * layout.y_mm) - out
     emitter_depth, detector_depth = np.maximum(depths, _LEAST_DEPTH_MM)
     light = {name: np.maximum(1.0 + of[name], _DARKEST) for name in (*_EACH, "exposure")}
-    holes = np.maximum(model.hole_mm + of["hole"], _LEAST_HOLE_MM)
+    holes = model.hole_mm * layout.hole_share + of["hole"][:, None]
     return Built(
         led_mm=cells + beside + boards[0] + parts[0],
         emitter_hole_mm=beside + masks[0],
         receiver_hole_mm=masks[1],
         detector_mm=cells + boards[1] + parts[1],
-        hole_mm=(float(holes[0]), float(holes[1])),
+        hole_mm=np.maximum(holes, _LEAST_HOLE_MM),
         led_depth_mm=emitter_depth,
         detector_depth_mm=detector_depth,
         led_gap_mm=gaps[0],

@@ -146,14 +146,14 @@ class Response:
         ]
         tilted = np.tan(np.radians(of["tilt"])) * self._layout.y_mm
         half = np.maximum(self._gap_mm(deviations) + tilted, _LEAST_GAP_MM) / 2.0
-        hole = max(model.hole_mm + of["hole"], _LEAST_HOLE_MM)
+        holes = np.maximum(model.hole_mm * self._layout.hole_share + of["hole"], _LEAST_HOLE_MM)
         return self._rays.of(
             Built(
                 led_mm=cells + beside,
                 emitter_hole_mm=masks[0] + beside,
                 receiver_hole_mm=masks[1],
                 detector_mm=cells,
-                hole_mm=(hole, hole),
+                hole_mm=np.stack([holes, holes]),
                 led_depth_mm=depths[0],
                 detector_depth_mm=depths[1],
                 led_gap_mm=half,

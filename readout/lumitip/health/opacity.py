@@ -71,8 +71,9 @@ def most_transmission(layout: Layout) -> float:
         LayoutError: if `layout` is not a layout.
     """
     arguments.layout(layout)
-    hole_mm, circle = layout.optics.hole_mm, layout.optics.hole_shape == "circle"
-    hole_mm2 = hole_mm**2 * (math.pi / 4 if circle else math.sqrt(3) / 2)
+    circle = layout.optics.hole_shape == "circle"
+    # The smallest hole is the one beside which the least light may pass.
+    hole_mm2 = float(layout.hole_mm.min()) ** 2 * (math.pi / 4 if circle else math.sqrt(3) / 2)
     cell_mm2 = layout.pitch_mm**2 * math.sqrt(3) / 2
     return MOST_LEAK * hole_mm2 / (cell_mm2 - hole_mm2)
 

@@ -1,6 +1,6 @@
 """Light of built fingers: the twin's rays, with every LED, hole and detector at its own place.
 
-`Twin` moves the emitter as a whole, and gives all cells one hole, depth and gap. Here each ray
+`Twin` moves the emitter as a whole, and gives all cells one depth and gap. Here each ray
 begins at the place of its own LED or hole and ends at that of its own detector or hole, with the
 twin's weights. Of the rays between two holes a fixed sample is taken. Borders of holes are as soft
 as an LED's width makes them, so that the light changes steadily as a mask moves.
@@ -61,8 +61,8 @@ class Built:
     emitter_hole_mm: Floats
     receiver_hole_mm: Floats
     detector_mm: Floats
-    hole_mm: tuple[float, float]
-    """Holes of emitter and receiver (mm)."""
+    hole_mm: Floats
+    """Sizes of the holes of emitter and receiver, shape `(2, cells)` (mm)."""
     led_depth_mm: Floats
     """Equivalent depth of each LED behind its hole, shape `(cells,)`."""
     detector_depth_mm: Floats
@@ -118,15 +118,16 @@ class Rays:
         way = gap + above + below
         from_hole = built.emitter_hole_mm[:, led, None]
         to_hole = built.receiver_hole_mm[:, cell, None]
+        from_mm, to_mm = built.hole_mm[0, led, None], built.hole_mm[1, cell, None]
         begin = np.where(begin_deep, built.led_mm[:, led, None], from_hole)
-        begin = begin + (self._source * built.hole_mm[0])[:, None]
+        begin = begin + self._source[:, None] * from_mm
         end = np.where(end_deep, built.detector_mm[:, cell, None], to_hole)
-        end = end + (self._target * built.hole_mm[1])[:, None]
+        end = end + self._target[:, None] * to_mm
         slope = (begin - end) / way
         low = end + slope * below  # at the receiver's mask
         high = begin - slope * above
-        weight = self._inside(low - to_hole, built.hole_mm[1], end_deep)
-        weight *= self._inside(high - from_hole, built.hole_mm[0], begin_deep)
+        weight = self._inside(low - to_hole, to_mm, end_deep)
+        weight *= self._inside(high - from_hole, from_mm, begin_deep)
         power = (model.led_exponent + model.detector_exponent + 2.0) / 2.0
         weight *= (1.0 + (slope**2).sum(axis=0)) ** -power / way**2
         deep = begin_deep + end_deep
@@ -141,7 +142,7 @@ class Rays:
             gap.ravel().astype(np.float32),
         )
 
-    def _inside(self, place: Floats, hole_mm: float, deep: Floats) -> Floats:
+    def _inside(self, place: Floats, hole_mm: Floats, deep: Floats) -> Floats:
         """Share of each ray that passes a hole, for rays of a die."""
         x, y = np.abs(place)
         if self._model.hole_shape == "circle":

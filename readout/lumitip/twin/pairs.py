@@ -92,8 +92,8 @@ class Pairs:
     cell: Integers
     kind: Integers
     """Index into `kinds`."""
-    kinds: tuple[tuple[Model, float, float], ...]
-    """Model (with the local gap) and displacement (mm) of each bundle."""
+    kinds: tuple[tuple[Model, float, float, tuple[float, float]], ...]
+    """Model (with the local gap), displacement (mm) and holes of each bundle."""
 
     @classmethod
     def of(cls, layout: Layout, emitter: Emitter) -> "Pairs":
@@ -109,9 +109,13 @@ class Pairs:
         gap_um, x_um, y_um = np.rint(1e3 * keys.T).astype(np.int64)
         whole = (gap_um << 40) + (x_um << 20) + y_um
         _, first, kind = np.unique(whole, return_index=True, return_inverse=True)
-        unique = keys[first].tolist()
-        kinds = tuple((replace(model, gap_mm=g), x, y) for g, x, y in unique)
-        return cls(len(layout), cell, kind, kinds)
+        shares = np.stack([layout.hole_share[led], layout.hole_share[cell]])
+        if np.ptp(layout.hole_share):
+            rows = np.stack([kind, *shares])
+            _, first, kind = np.unique(rows, axis=1, return_index=True, return_inverse=True)
+        each = zip(keys[first].tolist(), shares[:, first].T.tolist(), strict=True)
+        kinds = tuple((replace(model, gap_mm=g), x, y, (a, b)) for (g, x, y), (a, b) in each)
+        return cls(len(layout), cell, kind.ravel(), kinds)
 
     @cached_property
     def _across(self) -> tuple[int, ...]:
@@ -122,7 +126,7 @@ class Pairs:
 
     def bundle(self, kind: int, across: int | None = None) -> Bundle:
         """Rays of one kind."""
-        return bundle(*self.kinds[kind], across or self._across[kind])
+        return bundle(*self.kinds[kind], across=across or self._across[kind])
 
     @cached_property
     def light(self) -> Floats:
@@ -191,7 +195,7 @@ class Mixed:
         sizes = np.array([b.weight.size for b in bundles])[pairs.kind]
         self._cell = np.repeat(pairs.cell, sizes)
         self._cells = pairs.cells
-        gaps = np.array([model.gap_mm for model, _, _ in pairs.kinds])
+        gaps = np.array([model.gap_mm for model, *_ in pairs.kinds])
         self._gap_mm = np.repeat(gaps[pairs.kind], sizes)
 
         def gathered(part: Callable[[Bundle], Floats]) -> Floats:

@@ -121,7 +121,7 @@ class _Grid:
     @classmethod
     def around(cls, layout: Layout, model: Model) -> "_Grid":
         # Small holes resolve finer details than the usual pixel.
-        pixel_mm = min(PIXEL_MM, model.hole_mm / 5.0)
+        pixel_mm = min(PIXEL_MM, model.hole_mm * float(layout.hole_share.min()) / 5.0)
         margin = REACH_MM / 2.0 + _PATCH_MM / 2.0
         half = [
             int(np.ceil((np.abs(a).max() + margin) / pixel_mm)) for a in (layout.x_mm, layout.y_mm)
@@ -180,9 +180,9 @@ class _Scattered:
         self._gap_mm = gap_mm = emitter.gap_mm(layout.y_mm)
         led_x, led_y = emitter.leds_mm(layout)
         self._irradiance = np.zeros(grid.pixels)
-        for x, y, gap in zip(led_x, led_y, gap_mm, strict=True):
+        for x, y, gap, share in zip(led_x, led_y, gap_mm, layout.hole_share, strict=True):
             index, light = self._patch(
-                x, y, (1.0 - height) * gap, model.emitter_depth_mm, model.led_exponent
+                x, y, share, (1.0 - height) * gap, model.emitter_depth_mm, model.led_exponent
             )
             self._irradiance[index] += light
 
@@ -191,6 +191,7 @@ class _Scattered:
         index, light = self._patch(
             self._layout.x_mm[cell],
             self._layout.y_mm[cell],
+            self._layout.hole_share[cell],
             self._height * self._gap_mm[cell],
             self._model.detector_depth_mm,
             self._model.detector_exponent,
@@ -200,7 +201,13 @@ class _Scattered:
         return row
 
     def _patch(
-        self, x_mm: float, y_mm: float, away_mm: float, depth_mm: float, exponent: float
+        self,
+        x_mm: float,
+        y_mm: float,
+        hole: float,
+        away_mm: float,
+        depth_mm: float,
+        exponent: float,
     ) -> tuple[Integers, Floats]:
         """Pixels around an LED or detector, and the light that passes between it and each."""
         away_mm = max(away_mm, _THICK_MM)
@@ -209,10 +216,10 @@ class _Scattered:
         x, y = x - x_mm, y - y_mm
         power = -(exponent + 3.0) / 2.0
         deep = away_mm + depth_mm
-        through = in_hole(self._model)(x * (depth_mm / deep), y * (depth_mm / deep))
+        through = in_hole(self._model, hole)(x * (depth_mm / deep), y * (depth_mm / deep))
         die = through * (1.0 + (x * x + y * y) / deep**2) ** power / deep**2
         hole_x, hole_y = hole_points(self._model, _COARSE)
-        square = (x[:, None] - hole_x) ** 2 + (y[:, None] - hole_y) ** 2
-        hole = ((1.0 + square / away_mm**2) ** power).mean(axis=1) / away_mm**2
-        light: Floats = (1.0 - self._model.alpha) * die + self._model.alpha * hole
+        square = (x[:, None] - hole * hole_x) ** 2 + (y[:, None] - hole * hole_y) ** 2
+        spread = ((1.0 + square / away_mm**2) ** power).mean(axis=1) / away_mm**2
+        light: Floats = (1.0 - self._model.alpha) * die + self._model.alpha * spread
         return index, light

@@ -3,7 +3,8 @@
 Light starts at the die (share 1 − alpha) or anywhere in the hole (alpha, scattered by silicone and
 film), and ends at the detector in the same way. Each pair of points is a ray of weight
 cos(angle) ** (m + n + 2) / D² with D the distance along the axis. LEDs at the same displacement
-from their detector have the same rays, so a hexagonal grid of any size needs about twenty bundles.
+from their detector, behind the same holes, have the same rays, so a hexagonal grid of any size with
+equal holes needs about twenty bundles.
 """
 
 from collections.abc import Callable
@@ -42,24 +43,31 @@ class Bundle:
         return self.x_mm + height_mm * self.across, self.y_mm + height_mm * self.along
 
 
-@lru_cache(maxsize=512)
-def bundle(model: Model, dx_mm: float, dy_mm: float, across: int = ACROSS) -> Bundle:
+@lru_cache(maxsize=2048)
+def bundle(
+    model: Model,
+    dx_mm: float,
+    dy_mm: float,
+    holes: tuple[float, float] = (1.0, 1.0),
+    across: int = ACROSS,
+) -> Bundle:
     """Rays from an LED that is displaced by `(dx_mm, dy_mm)` from its detector (sensor frame).
 
     Args:
         model: optics; its gap is the distance of the masks.
         dx_mm: LED minus detector, in x (mm).
         dy_mm: in y (mm).
+        holes: of the LED and of the detector, relative to the model's; see `Layout.hole_share`.
         across: points across half of a hole.
     """
     x, y = hole_points(model, across)
-    spread = model.alpha / x.size
+    spread = np.full(x.size, model.alpha / x.size)
     die = (np.zeros(1), np.zeros(1), np.array([1.0 - model.alpha]))
-    hole = (x, y, np.full(x.size, spread))
+    led_hole, cell_hole = ((share * x, share * y, spread) for share in holes)
     parts = [
-        _rays(model, (dx_mm, dy_mm), (*source, up), (*target, down))
-        for source, up in ((die, model.emitter_depth_mm), (hole, 0.0))
-        for target, down in ((die, model.detector_depth_mm), (hole, 0.0))
+        _rays(model, (dx_mm, dy_mm), holes, (*source, up), (*target, down))
+        for source, up in ((die, model.emitter_depth_mm), (led_hole, 0.0))
+        for target, down in ((die, model.detector_depth_mm), (cell_hole, 0.0))
     ]
     return Bundle(*np.concatenate(parts, axis=1))
 
@@ -67,7 +75,13 @@ def bundle(model: Model, dx_mm: float, dy_mm: float, across: int = ACROSS) -> Bu
 End = tuple[Floats, Floats, Floats, float]
 
 
-def _rays(model: Model, shift_mm: tuple[float, float], source: End, target: End) -> Floats:
+def _rays(
+    model: Model,
+    shift_mm: tuple[float, float],
+    holes: tuple[float, float],
+    source: End,
+    target: End,
+) -> Floats:
     """Rays from points behind the emitter's mask to points behind the receiver's, as rows."""
     way_mm = source[3] + model.gap_mm + target[3]
     across = ((source[0] + shift_mm[0])[:, None] - target[0]).ravel() / way_mm
@@ -77,16 +91,17 @@ def _rays(model: Model, shift_mm: tuple[float, float], source: End, target: End)
     power = (model.led_exponent + model.detector_exponent + 2.0) / 2.0
     weight = np.outer(source[2], target[2]).ravel() / way_mm**2
     weight *= (1.0 + across**2 + along**2) ** -power
-    inside = in_hole(model)
-    through = inside(x, y) & inside(
+    from_hole, to_hole = (in_hole(model, share) for share in holes)
+    through = to_hole(x, y) & from_hole(
         x + model.gap_mm * across - shift_mm[0], y + model.gap_mm * along - shift_mm[1]
     )
     return np.stack([x, y, across, along, weight])[:, through]
 
 
-def in_hole(model: Model) -> Callable[[Floats, Floats], np.ndarray]:
-    """A function that finds the points (mm from the centre of a hole) within the hole."""
-    apothem = model.hole_mm / 2.0 + 1e-9
+def in_hole(model: Model, share: float = 1.0) -> Callable[[Floats, Floats], np.ndarray]:
+    """A function that finds the points (mm from the centre of a hole) within the hole, which has
+    this share of the model's size."""
+    apothem = share * model.hole_mm / 2.0 + 1e-9
     if model.hole_shape == "circle":
         return lambda x, y: x * x + y * y <= apothem**2
     return lambda x, y: (np.abs(y) <= apothem) & (_SIN60 * np.abs(x) + 0.5 * np.abs(y) <= apothem)

@@ -39,15 +39,9 @@ def derive_cells(p: Parameters, faults: Diagnostics) -> Cells:
         faults.add("few_cells", count=count, least_cells=LEAST_CELLS)
     if count > MOST_CELLS:
         faults.add("many_cells", count=count, most_cells=MOST_CELLS)
-    web = pitch - p.mask.hole_mm
-    if web < LEAST_WEB_MM:
-        faults.add(
-            "apertures_close",
-            web=web,
-            pitch=pitch,
-            least_web_mm=LEAST_WEB_MM,
-            most=max(pitch - LEAST_WEB_MM, 0),
-        )
+    if p.mask.cell_holes_mm and len(p.mask.cell_holes_mm) != count:
+        faults.add("cell_holes", holes=len(p.mask.cell_holes_mm), count=count)
+    _refuse_close_apertures(p, faults)
     if not LEAST_CELLS <= count <= MOST_CELLS:
         nowhere, none = np.zeros(0), np.zeros(0, dtype=np.int64)
         return Cells(nowhere, nowhere, none, none, none.reshape(0, 2))
@@ -56,6 +50,30 @@ def derive_cells(p: Parameters, faults: Diagnostics) -> Cells:
     # To a nanometre, as in `layout.json`, so that every artefact has the very same positions.
     x_mm, y_mm = (np.round(v, 6) + 0.0 for v in (grid.x_mm, grid.y_mm))
     return Cells(x_mm, y_mm, grid.column, grid.row, neighbours)
+
+
+def least_web_mm(p: Parameters) -> float:
+    """The narrowest web between the apertures of neighbouring cells."""
+    count = sum(p.grid.columns)
+    sizes, pairs = np.array(p.mask.holes_mm(count)), hexagonal_neighbours(p.grid.columns)
+    reach = sizes[pairs].sum(axis=1).max(initial=0.0) / 2.0
+    return p.grid.pitch_mm - float(reach)
+
+
+def _refuse_close_apertures(p: Parameters, faults: Diagnostics) -> None:
+    web = least_web_mm(p)
+    if web >= LEAST_WEB_MM:
+        return
+    pitch = p.grid.pitch_mm
+    faults.add(
+        "apertures_close",
+        p.mask.holes_field,
+        web=web,
+        pitch=pitch,
+        least_web_mm=LEAST_WEB_MM,
+        most=max(pitch - LEAST_WEB_MM, 0),
+        mean=" as the mean of two neighbours" if p.mask.cell_holes_mm else "",
+    )
 
 
 GROUND_LINES = 1

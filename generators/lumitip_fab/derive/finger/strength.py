@@ -74,7 +74,7 @@ def derive_strength(config: Input, body: Body, optics: Optics, faults: Diagnosti
     Args:
         config: the parameters.
         body: what bears the load.
-        optics: for apertures and the depth of the dies.
+        optics: for the depth of the dies.
         faults: where to refuse.
     """
     strength, force = _limits(config, body), config.parameters.finger.rated_force_n
@@ -118,10 +118,11 @@ def _uses(config: Input, body: Body, limit: Strength, optics: Optics) -> Iterato
     cells = np.array(body.finger.cells) - (0.0, body.mount.origin_y_mm)
     depth = max(optics.emitter_depth_mm, optics.detector_depth_mm)
     found = loads(_loaded(body, limit), limit, cells, depth)
+    narrowest, _ = config.parameters.mask.extremes_mm
     for rule, figure, most in (
         ("finger_bends", found.bend_mm, limit.most_bend_mm),
         ("finger_strains_board", 100 * found.board_strain, 100 * limit.board_strain),
-        ("finger_shades", found.offset_mm, limit.offset_share * optics.hole_mm / 2),
+        ("finger_shades", found.offset_mm, limit.offset_share * narrowest / 2),
     ):
         yield _Use(rule, figure, most / RESERVE, figure * RESERVE / most)
     least = limit.safety * RESERVE

@@ -43,7 +43,7 @@ def derive_gauge_cards(
 ) -> tuple[GaugeCard, ...]:
     """The gauge card; none of compliant fingers, and none where it has no room."""
     outline, layer = body.outline, printing.layer_mm
-    hole = config.parameters.mask.hole_mm
+    _, hole = config.parameters.mask.extremes_mm
     window = _window(cells, hole / math.sqrt(3) + LIGHT_MM)
     flat = (outline.end_y_mm + mould.end_round_mm, outline.tip_y_mm - mould.taper_length_mm)
     cables_y = max(finger.window.y_max_mm for finger in fingers)

@@ -25,7 +25,7 @@ def derive_inserts(config: Input, flat: shapely.Geometry, finger: Finger) -> tup
     if film is None:
         return ()
     clearance = CLEARANCE_MM + max(p.printer.fit_mm, 0.0)
-    reach = p.mask.hole_mm / math.sqrt(3)  # of a hexagon's corner; a circle's edge is nearer
+    reach = p.mask.extremes_mm[1] / math.sqrt(3)  # of a hexagon's corner; a circle's edge is nearer
     room = flat.buffer(-LAND_MM)
     for step in range(round((MARGIN_MM - LEAST_MARGIN_MM) / STEP_MM) + 1):
         box = _round_cells(finger, reach + MARGIN_MM - step * STEP_MM)

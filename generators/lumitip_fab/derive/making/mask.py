@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.boards import Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.derive.finger.cells import LEAST_WEB_MM
+from lumitip_fab.derive.finger.cells import LEAST_WEB_MM, least_web_mm
 from lumitip_fab.design import Box, Mask, Outline, Point, Sheet
 from lumitip_fab.design.making import FOLD_OFF_MM
 
@@ -37,11 +37,13 @@ def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Diagnostics
         needed="an opaque" if opaque else "a clear",
         films=", ".join((n for n, f in config.catalogue.films.items() if f.opaque == opaque)),
     )
-    lowest = min(y for _, y in plan.receiver.cells) - p.mask.hole_mm / 2
+    holes = p.mask.holes_mm(len(plan.receiver.cells))
+    lowest = min(y - hole / 2 for (_, y), hole in zip(plan.receiver.cells, holes, strict=True))
     window = max(plan.receiver.window.y_max_mm, plan.emitter.window.y_max_mm)
     faults.unless(
         lowest - window >= LEAST_WEB_MM,
         "aperture_near_window",
+        p.mask.holes_field,
         least_web_mm=LEAST_WEB_MM,
         web_mm=lowest - window,
     )
@@ -77,7 +79,7 @@ def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Diagnostics
         _refuse_sheet(config, printed, lowest - window, sheet, faults)
     return Mask(
         route=p.mask.route,
-        hole_mm=p.mask.hole_mm,
+        holes_mm=holes,
         hole_shape=p.mask.hole_shape,
         allowance_mm=p.mask.allowance_mm,
         flap_mm=p.mask.flap_mm,
@@ -102,7 +104,7 @@ def _sheet_of(config: Input, mark: Box) -> Sheet:
         layers=mask.layers,
         layer_mm=printer.layer_mm,
         line_mm=printer.line_mm,
-        hole_mm=round(mask.hole_mm + config.parts.mask.filament.hole_loss_mm, 6),
+        hole_loss_mm=config.parts.mask.filament.hole_loss_mm,
         fold_mm=round(FOLD_LINES * printer.line_mm, 6) if mask.layers > 1 else 0.0,
         letter=mask.layers > 1 and STROKE * mark.length_mm >= printer.line_mm,
     )
@@ -114,17 +116,20 @@ def _refuse_sheet(
     """Refuse a printed sheet with webs or holes narrower than a line, one that is larger than the
     bed, and a filament that does not bend."""
     p, line, bed = config.parameters, printed.line_mm, config.parts.printer.profile.bed_mm
-    loss = printed.hole_mm - p.mask.hole_mm
-    web = min(p.grid.pitch_mm - p.mask.hole_mm, to_window_mm + loss / 2) - loss
+    loss = printed.hole_loss_mm
+    web = min(least_web_mm(p), to_window_mm + loss / 2) - loss
+    narrowest, _ = p.mask.extremes_mm
     faults.unless(
         web >= line - 1e-9,
         "sheet_web",
+        p.mask.holes_field,
         printed=printed,
         web=web,
         line=line,
-        most=max(p.mask.hole_mm - line + web, 0),
+        most=max(p.grid.pitch_mm - least_web_mm(p) - line + web, 0),
+        mean=" as the mean of two neighbours" if p.mask.cell_holes_mm else "",
     )
-    faults.unless(p.mask.hole_mm >= line - 1e-9, "sheet_hole", line=line)
+    faults.unless(narrowest >= line - 1e-9, "sheet_hole", p.mask.holes_field, line=line)
     faults.unless(
         printed.thickness_mm >= LEAST_SHEET_MM - 1e-9,
         "sheet_thin",
