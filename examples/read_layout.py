@@ -17,4 +17,5 @@ for cell in layout.cells:
         f"{cell.index:4} x {cell.x_mm:8.3f} y {cell.y_mm:8.3f}  U{cell.mux + 1} input "
         f"{cell.channel:2} on {cell.adc_pin}"
     )
-print(f"{len(layout.neighbours)} pairs of neighbours, apertures of {layout.optics.hole_mm} mm")
+sizes = " to ".join(f"{size:g}" for size in sorted({layout.hole_mm.min(), layout.hole_mm.max()}))
+print(f"{len(layout.neighbours)} pairs of neighbours, apertures of {sizes} mm")

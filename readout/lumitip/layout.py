@@ -39,8 +39,8 @@ class Optics:
     """The optical path between an LED and its photodetector."""
 
     hole_mm: float
-    """Mask aperture: across flats of a hexagon, diameter of a circle (mm). Single cells may have
-    another, see `Layout.hole_share`."""
+    """Mask aperture: across flats of a hexagon, diameter of a circle (mm); the mean of all cells,
+    see `Layout.hole_share`."""
     hole_shape: str
     """`"hexagon"` (flats face the tip) or `"circle"`."""
     emitter_depth_mm: float
@@ -92,8 +92,7 @@ class Layout:
     optics: Optics
     schema_version: int = SCHEMA_VERSION
     hole_share: Floats = field(default_factory=lambda: np.ones(0))
-    """Aperture of each cell in both masks, relative to `optics.hole_mm`, shape `(cells,)`; 1 for
-    all where nothing else is given."""
+    """Aperture of each cell relative to `optics.hole_mm`, shape `(cells,)`; 1 by default."""
 
     def __post_init__(self) -> None:
         if not np.size(self.hole_share):

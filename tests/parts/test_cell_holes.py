@@ -52,6 +52,10 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
         {"mask.cell_holes_mm": other(other(ALIKE, 6, 6.5), 7, 5.5)},
         "has 2.5 to 6.5, which leaves 0.00 mm between apertures 6 mm apart",
     ),
+    "two cells apart": (
+        {"mask.cell_holes_mm": other(other((2.0,) * 32, 2, 9.2), 11, 9.2)},
+        "wide apertures two cells apart",
+    ),
     "closed in print": (
         {"mask.cell_holes_mm": other(ALIKE, 3, 0.4), "mask.route": "tpu"},
         "or the holes of the printed sheet close",

@@ -1,7 +1,7 @@
 """The twin in the page beside that in Python: the same values within 0.01 counts."""
 
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import cache
 from pathlib import Path
 
@@ -13,14 +13,15 @@ from lumitip.layout import Layout
 from lumitip.twin import Cable, Corner, HalfPlane, Model, Thing, Twin
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
+from lumitip_fab.site.page import twin_data
 from page_colours import ramp
 from site_page import Opened, marked
 
 pytestmark = pytest.mark.slow
 
 COUNT = 0.01
-VALUES = """([{x_mm, y_mm, model}, shapes]) => {
-    const twin = new Twin({x_mm, y_mm, model});
+VALUES = """([record, shapes]) => {
+    const twin = new Twin(record);
     return shapes.map(shape => twin.values(shape));
 }"""
 
@@ -58,11 +59,7 @@ def places(count: int) -> np.ndarray:
 
 
 def of_page(tab: Page, layout: Layout, model: Model, shapes: list[object]) -> np.ndarray:
-    record = {
-        "x_mm": layout.x_mm.tolist(),
-        "y_mm": layout.y_mm.tolist(),
-        "model": asdict(model),
-    }
+    record = twin_data(layout) | {"model": asdict(model)}
     return np.array(tab.evaluate(VALUES, [record, shapes]))
 
 
@@ -88,6 +85,7 @@ def test_values_are_those_of_python(
     [
         ("dense", {}),
         ("asymmetric", {"hole_shape": "circle", "gap_mm": 4.0, "alpha": 0.3, "gain": 1.4}),
+        ("published", {"hole_share": 3}),
     ],
 )
 def test_other_grids_and_optics(
@@ -98,6 +96,10 @@ def test_other_grids_and_optics(
     kind: Callable[..., object],
 ) -> None:
     layout = derive(load(design_dir / "presets" / f"{preset}.toml")).layout
+    changes = dict(changes)
+    if seed := changes.pop("hole_share", 0):
+        sizes = np.random.default_rng(seed).uniform(0.7, 1.4, len(layout))
+        layout = replace(layout, hole_share=sizes.round(1))
     model = Model.from_layout(layout).changed(**changes)
     pairs = [kind(place) for place in places(30)]
     shapes, things = zip(*pairs, strict=True)  # type: ignore[arg-type]

@@ -15,6 +15,7 @@ from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design
 
 READS = ("layout.json",)
+_NEAR = 1e-5  # mm
 _FILE = "layout.json"
 _NAMES = (
     "layout.cells",
@@ -42,7 +43,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         return
     column, row, x_mm, y_mm = np.array(cells).T
     apart = np.hypot(layout.x_mm - x_mm, layout.y_mm - y_mm).max()
-    yield Measurement("layout.cells", _FILE, float(apart), 0, 1e-5, "mm", "worst cell centre")
+    yield Measurement("layout.cells", _FILE, float(apart), 0, _NEAR, "mm", "worst cell centre")
     misplaced = (layout.column != column) | (layout.row != row)
     yield Measurement("layout.order", _FILE, float(misplaced.sum()), 0, 0, "cells", "column, row")
     # Cells of a hexagonal lattice are one pitch apart, or 1.73 pitches and more.
@@ -79,13 +80,16 @@ def _optics(layout: Layout, design: Design) -> Measurement:
     optics = {**asdict(layout.optics), "pitch_mm": layout.pitch_mm}
     wanted = {**asdict(design.layout.optics), "pitch_mm": design.grid.pitch_mm}
     wrong = [name for name, value in wanted.items() if not _same(optics[name], value)]
+    drawn = np.array(design.mask.holes_mm)
+    if drawn.shape != layout.hole_mm.shape or np.abs(layout.hole_mm - drawn).max() > _NEAR:
+        wrong.append("hole_mm of single cells")
     note = f"that differ: {', '.join(wrong) or 'none'}"
     return Measurement("layout.optics", _FILE, float(len(wrong)), 0, 0, "figures", note)
 
 
 def _same(found: object, wanted: object) -> bool:
     if isinstance(found, float) and isinstance(wanted, float):
-        return math.isclose(found, wanted, abs_tol=1e-5)
+        return math.isclose(found, wanted, abs_tol=_NEAR)
     return found == wanted
 
 
@@ -109,4 +113,4 @@ def _facing(layout: Layout, design: Design) -> Measurement:
     if not seen.shape == shone.shape == cells.shape:
         return unreadable("layout.facing", _FILE, "the fingers have another number of cells")
     worst = max(np.abs(seen - cells).max(), np.abs(shone - cells).max())
-    return Measurement("layout.facing", _FILE, float(worst), 0, 1e-5, "mm", "LED to detector")
+    return Measurement("layout.facing", _FILE, float(worst), 0, _NEAR, "mm", "LED to detector")

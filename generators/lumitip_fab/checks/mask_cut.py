@@ -113,12 +113,14 @@ def measure_holes(read: Cut) -> Iterator[Measurement]:
 def measure_web(read: Cut) -> Iterator[Measurement]:
     """The least web between two circles, or from one to window or edge."""
     radii = read.drawn.diameters_mm / 2
-    apart_mm, near = cKDTree(read.drawn.centres).query(read.drawn.centres, k=2)
-    between = apart_mm[:, 1] - radii - radii[near[:, 1]]
+    within = read.design.grid.pitch_mm + radii.max()
+    one, other = cKDTree(read.drawn.centres).query_pairs(within, output_type="ndarray").T
+    apart_mm = np.linalg.norm(read.drawn.centres[one] - read.drawn.centres[other], axis=1)
+    between = (apart_mm - radii[one] - radii[other]).min(initial=within)
     centres = shapely.points(read.drawn.centres)
     rings = map(shapely.LinearRing, (*read.drawn.edges, *read.drawn.windows))
     around = [float((shapely.distance(centres, ring) - radii).min()) for ring in rings]
-    yield read.figure("web", min(float(between.min()), *around), WEB_MM, math.inf)
+    yield read.figure("web", min(float(between), *around), WEB_MM, math.inf)
 
 
 def measure_outline(read: Cut) -> Iterator[Measurement]:

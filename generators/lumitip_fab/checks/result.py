@@ -181,7 +181,7 @@ class Subject:
         values = np.atleast_1d(np.asarray(measured, dtype=np.float64))
         every = np.asarray(wanted, dtype=np.float64)
         aims = np.broadcast_to(every, values.shape)
-        worst, aim = math.nan, float(every.mean())
+        worst, aim = math.nan, float(every.mean()) if every.size else 0.0
         if values.size and np.isfinite(values).all():
             at_worst = int(np.abs(values - aims).argmax())
             worst, aim = float(values[at_worst]), float(aims[at_worst])

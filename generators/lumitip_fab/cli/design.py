@@ -15,9 +15,11 @@ from lumitip_fab.explore.accuracy import Sample
 from lumitip_fab.solve import files
 from lumitip_fab.solve.confirm import EVIDENCE
 from lumitip_fab.solve.goals import read_goals
+from lumitip_fab.solve.holes import FIELD
 from lumitip_fab.solve.judge import excesses
 from lumitip_fab.solve.study import Options, Study, study
 
+_LONG = 8  # numbers
 _LIMITS = {"designs": (8, 100_000), "points": (1, 50), "seed": (0, 2**32 - 1)}
 
 
@@ -116,13 +118,15 @@ def print_study(found: Study, console: Console) -> None:
 
 
 def _of_base(base: Input, field: str) -> object:
+    if field == FIELD and not base.value(FIELD):
+        return base.value("mask.hole_mm")
     return "auto" if field in base.automatic else base.value(field)
 
 
 def _brief(value: object) -> str:
-    """A value; of a size for each cell, the smallest and the largest."""
+    """A value; of long lists of numbers, the smallest and the largest."""
     sizes = [of for of in value if isinstance(of, float)] if isinstance(value, tuple) else []
-    return f"{min(sizes)} … {max(sizes)}" if sizes else f"{value}"
+    return f"{min(sizes)} … {max(sizes)}" if len(sizes) > _LONG else f"{value}"
 
 
 def _listed(values: tuple[float, ...]) -> str:

@@ -155,7 +155,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
         adc_pin=wiring.pins_of(mux, muxing.adc_pins),
         pitch_mm=p.grid.pitch_mm,
         optics=optics,
-        hole_share=np.array(p.mask.holes_mm(len(cells))) / p.mask.hole_mm,
+        hole_share=np.array(p.mask.holes_mm(len(cells))) / optics.hole_mm,
     )
     return round_trip(
         Design(
@@ -212,7 +212,7 @@ def optics_of(config: Input) -> Optics:
     led = parts.leds[p.emitter.led]
     detector = parts.photodetectors[p.receiver.photodetector]
     return Optics(
-        hole_mm=p.mask.hole_mm,
+        hole_mm=round(float(np.mean(p.mask.cell_holes_mm or p.mask.hole_mm)), 6),
         hole_shape="circle" if p.mask.route == "cut" else p.mask.hole_shape,
         emitter_depth_mm=p.stack.silicone_mm - led.die_height_mm,
         detector_depth_mm=p.stack.silicone_mm - detector.die_height_mm,

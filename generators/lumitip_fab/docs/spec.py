@@ -274,7 +274,7 @@ def _further(design: Design) -> dict[str, Any]:
         "skin": (mount.stroke_mm - closing.max_opening_mm) / 2,
         "shape": shape,
         "holes_field": "mask.cell_holes_mm"
-        if len(set(design.mask.holes_mm)) > 1
+        if set(design.mask.holes_mm) != {design.layout.optics.hole_mm}
         else "mask.hole_mm",
         "across": "diameter" if shape == "circle" else "across flats",
         "flex_lean": " and flex.lean_deg" if design.interfaces else "",

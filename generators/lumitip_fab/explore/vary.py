@@ -60,7 +60,7 @@ def axes(config: Input, texts: Sequence[str], points: int) -> tuple[Axis, ...]:
     for field in sorted({f for f in fields if fields.count(f) > 1}):
         faults.append(_fault(field, "is there twice; write all of its values in one"))
     for axis in read:
-        faults += not_allowed(config, axis)
+        faults += not_allowed(config, axis) + without_effect(config, axis.field)
     designs = math.prod(len(axis.values) for axis in read)
     if not faults and designs > MOST_DESIGNS:
         faults.append(_fault("", f"makes {designs} designs; at most {MOST_DESIGNS} are evaluated"))
@@ -116,6 +116,14 @@ def not_allowed(config: Input, axis: Axis) -> list[Problem]:
             found = problems_of(error, Parameters, source)
             faults += [_fault(axis.field, problem.message) for problem in found]
     return faults
+
+
+def without_effect(config: Input, field: str) -> list[Problem]:
+    """A fault where another parameter takes the place of one that is to vary."""
+    if field == "mask.hole_mm" and config.parameters.mask.cell_holes_mm:
+        text = "has no effect here, since mask.cell_holes_mm has a size for each cell: vary that"
+        return [_fault(field, text)]
+    return []
 
 
 def same_size(columns: Sequence[int], pitch_mm: float, new_mm: float) -> tuple[int, ...]:

@@ -114,7 +114,12 @@ def page(folder: Folder, figures: Sequence[Figure]) -> str:
 def twin_data(layout: Layout) -> dict[str, Any]:
     """Cells and optical model, as the twin in the page takes them."""
     model = asdict(Model.from_layout(layout))
-    return {"x_mm": layout.x_mm.tolist(), "y_mm": layout.y_mm.tolist(), "model": model}
+    return {
+        "x_mm": layout.x_mm.tolist(),
+        "y_mm": layout.y_mm.tolist(),
+        "holes": layout.hole_share.tolist(),
+        "model": model,
+    }
 
 
 def _extent(layout: Layout, along_mm: NDArray[np.float64]) -> tuple[int, int]:

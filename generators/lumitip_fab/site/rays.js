@@ -4,8 +4,8 @@ const OPTICS = { reach_mm: 12.6, across: 6, few: 3, dim: 0.005, many: 60, kernel
 const FULL = 255;
 const SOFT = Math.round(OPTICS.pixel_mm / OPTICS.step_mm / 2);
 
-function inHole(model) {
-  const apothem = model.hole_mm / 2 + 1e-9;
+function inHole(model, share = 1) {
+  const apothem = (share * model.hole_mm) / 2 + 1e-9;
   if (model.hole_shape === "circle") return (x, y) => x * x + y * y <= apothem * apothem;
   return (x, y) => Math.abs(y) <= apothem
     && (Math.sqrt(3) / 2) * Math.abs(x) + 0.5 * Math.abs(y) <= apothem;
@@ -19,24 +19,36 @@ function holePoints(model, across) {
   return line.flatMap((y) => line.filter((x) => inside(x, y)).map((x) => [x, y]));
 }
 
-// Rays of an LED that is displaced from its detector: x, y at the receiver's mask, slopes, weight.
-function bundleOf(model, [dx, dy], across) {
+// Light that falls from a die on a hole, relative to that on one of the model's size.
+function relativeLight(model, share, depth, exponent) {
+  const held = (radius) => 1 - (1 + (radius / depth) ** 2) ** (-(exponent + 1) / 2);
+  return held((share * model.hole_mm) / 2) / held(model.hole_mm / 2);
+}
+
+// Rays of an LED that is displaced from its detector, each behind a hole of its own size: x, y at
+// the receiver's mask, slopes, weight.
+function bundleOf(model, { shift: [dx, dy], holes: [own, other] }, across) {
   const points = holePoints(model, across);
   const die = { points: [[0, 0]], share: 1 - model.alpha };
-  const hole = { points, share: model.alpha / points.length, depth: 0 };
-  const inside = inHole(model);
+  const holeOf = (size, depth, exponent) => ({
+    points: points.map(([x, y]) => [size * x, size * y]), depth: 0,
+    share: (model.alpha / points.length) * relativeLight(model, size, depth, exponent),
+  });
+  const ledHole = holeOf(own, model.emitter_depth_mm, model.led_exponent);
+  const cellHole = holeOf(other, model.detector_depth_mm, model.detector_exponent);
+  const [fromHole, toHole] = [inHole(model, own), inHole(model, other)];
   const power = (model.led_exponent + model.detector_exponent + 2) / 2;
   const rays = [];
-  for (const source of [{ ...die, depth: model.emitter_depth_mm }, hole]) {
-    for (const target of [{ ...die, depth: model.detector_depth_mm }, hole]) {
+  for (const source of [{ ...die, depth: model.emitter_depth_mm }, ledHole]) {
+    for (const target of [{ ...die, depth: model.detector_depth_mm }, cellHole]) {
       const way = source.depth + model.gap_mm + target.depth;
       const light = (source.share * target.share) / (way * way);
       for (const [sx, sy] of source.points) {
         for (const [tx, ty] of target.points) {
           const [a, b] = [(sx + dx - tx) / way, (sy + dy - ty) / way];
           const [x, y] = [tx + a * target.depth, ty + b * target.depth];
-          const above = inside(x + model.gap_mm * a - dx, y + model.gap_mm * b - dy);
-          if (above && inside(x, y)) rays.push([x, y, a, b, light * (1 + a * a + b * b) ** -power]);
+          const above = fromHole(x + model.gap_mm * a - dx, y + model.gap_mm * b - dy);
+          if (above && toHole(x, y)) rays.push([x, y, a, b, light * (1 + a * a + b * b) ** -power]);
         }
       }
     }

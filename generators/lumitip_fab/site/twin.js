@@ -1,7 +1,8 @@
 // The optical twin of the fingertip: the same tables and raster as `lumitip.twin` in Python.
 class Twin {
-  constructor({ x_mm: xs, y_mm: ys, model }) {
-    [this.xs, this.ys, this.model, this.tables] = [xs, ys, model, new Map()];
+  constructor({ x_mm: xs, y_mm: ys, holes, model }) {
+    [this.xs, this.ys, this.holes, this.model] = [xs, ys, holes, model];
+    this.tables = new Map();
     const kinds = new Map();
     this.seen = xs.map((x, cell) => {
       const kept = [];
@@ -9,19 +10,20 @@ class Twin {
         const shift = [xs[led] - x, ys[led] - ys[cell]];
         if (Math.hypot(...shift) > OPTICS.reach_mm) continue;
         const rounded = shift.map((v) => Math.round(v * 1000) / 1000 + 0);
-        const key = rounded.join();
-        if (!kinds.has(key)) kinds.set(key, { index: kinds.size, shift: rounded });
+        const sizes = [holes[led], holes[cell]];
+        const key = [...rounded, ...sizes].join();
+        if (!kinds.has(key)) kinds.set(key, { index: kinds.size, shift: rounded, holes: sizes });
         kept.push(kinds.get(key).index);
       }
       return kept.sort((a, b) => a - b);
     });
-    const shifts = [...kinds.values()].map((kind) => kind.shift);
-    const rough = shifts.map((shift) => bundleOf(model, shift, OPTICS.few));
+    const ways = [...kinds.values()];
+    const rough = ways.map((way) => bundleOf(model, way, OPTICS.few));
     const lights = rough.map((rays) => sum(rays[4]));
     const least = OPTICS.dim * Math.max(...lights);
-    const fine = (light) => light > least && shifts.length <= OPTICS.many;
-    this.bundles = shifts.map((shift, kind) =>
-      (fine(lights[kind]) ? bundleOf(model, shift, OPTICS.across) : rough[kind]));
+    const fine = (light) => light > least && ways.length <= OPTICS.many;
+    this.bundles = ways.map((way, kind) =>
+      (fine(lights[kind]) ? bundleOf(model, way, OPTICS.across) : rough[kind]));
     this.light = this.bundles.map((rays) => sum(rays[4]));
     this.full = this.seen.map((kept) => sum(kept.map((kind) => this.light[kind])));
     const most = Math.max(...this.full);
@@ -147,7 +149,7 @@ class Twin {
   // For each cell the pixels of the plane that its light crosses, with their shares of it.
   get plane() {
     if (this.planed) return this.planed;
-    const pixel = Math.min(OPTICS.pixel_mm, this.model.hole_mm / 5);
+    const pixel = Math.min(OPTICS.pixel_mm, (this.model.hole_mm * Math.min(...this.holes)) / 5);
     const cells = this.seen.map((kept, cell) => {
       const bins = new Map();
       for (const kind of kept) {

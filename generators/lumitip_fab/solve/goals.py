@@ -1,7 +1,7 @@
 """The goals file of a search: goals, limits, the base design and the parameters that may move."""
 
 import math
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -10,24 +10,20 @@ from pydantic import Field, ValidationError, model_validator
 
 from lumitip_fab.catalogue.record import Strict
 from lumitip_fab.config.load import Input, load
-from lumitip_fab.config.messages import brief, problems_of, shown_path, unknown_name
+from lumitip_fab.config.messages import problems_of, shown_path, unknown_name
 from lumitip_fab.config.source import Source, flat, read_toml
 from lumitip_fab.errors import InputError, Problem
 from lumitip_fab.explore.run import without_price
-from lumitip_fab.explore.vary import Axis, Changes, changed, not_allowed
-from lumitip_fab.solve.holes import BY, FIELD, axis_names, joined
+from lumitip_fab.explore.vary import Axis, Changes, changed, not_allowed, without_effect
+from lumitip_fab.solve.holes import FIELD, HOLE, grouped, joined
 from lumitip_fab.solve.information import POSE_SD, Grasps
+from lumitip_fab.solve.ranges import RANGE, as_numbers_of, values_of
 
 KEEP_SIZE = "keep_size"
 """Spec of `grid.columns`: they follow the pitch, so that the grid keeps its size."""
-COLUMNS, HOLE = "grid.columns", "mask.hole_mm"
-MOST = 1e9
-MOST_VALUES = 1000
-"""Values of one parameter."""
+COLUMNS = "grid.columns"
 WITHOUT_LIGHT = ("emitter.led", "receiver.photodetector")
 """Parts whose light the twin does not know; what they do to the accuracy is unknown."""
-_DECIMALS = 6
-_RANGE = "{ from = A, to = B, step = C }"
 _Millimetres = Annotated[float, Field(gt=0, lt=POSE_SD[0])]
 _Degrees = Annotated[float, Field(gt=0, lt=POSE_SD[1])]
 _Gaps = Annotated[tuple[Annotated[float, Field(ge=1, le=10)], ...], Field(min_length=1)]
@@ -99,7 +95,7 @@ class GoalsFile(Strict):
     @model_validator(mode="after")
     def _some_vary(self) -> "GoalsFile":
         if not any(self.vary.values()):
-            raise ValueError(f"vary is empty; write at least one parameter as {_RANGE} or a list")
+            raise ValueError(f"vary is empty; write at least one parameter as {RANGE} or a list")
         return self
 
 
@@ -149,7 +145,13 @@ def read_goals(path: Path) -> Task:
     fixed, faults = _fixed(source, base, file.fixed)
     task_base = base if faults else changed(base, fixed)
     axes, more = _axes(source, task_base, file.vary)
-    both = {field for field, _ in fixed} & {axis.field for axis in axes}
+    varied = {
+        field
+        for field, _ in joined(
+            tuple((a.field, a.values[0]) for a in axes), task_base.parameters.grid.columns
+        )
+    }
+    both = {field for field, _ in fixed} & varied
     faults += more + [
         _fault(source, f"vary.{field}", "is in [fixed] too; keep one of them") for field in both
     ]
@@ -214,73 +216,20 @@ def _axes(
                     f'is "{KEEP_SIZE}", but grid.pitch_mm does not vary. Vary it, or remove this.'
                 )
                 faults.append(_fault(source, name, text))
-        elif field == FIELD and isinstance(spec, dict) and "by" in spec:
-            more, problems = _grouped(base, spec, written.keys() & {COLUMNS, HOLE})
+        elif field == FIELD and isinstance(spec, dict):
+            more, problems = grouped(base, spec, written.keys() & {COLUMNS, HOLE})
             axes += more
             faults += _placed(source, name, problems)
-        elif isinstance(values := _values(spec), str):
+        elif isinstance(values := values_of(spec), str):
             faults.append(_fault(source, name, values))
         else:
-            axis = Axis(field, _as_numbers_of(base, field, values))
-            faults += _placed(source, name, not_allowed(base, axis))
+            axis = Axis(field, as_numbers_of(base, field, values))
+            found = not_allowed(base, axis) + without_effect(base, field)
+            faults += _placed(source, name, found)
             axes.append(axis)
     return tuple(axes), faults
-
-
-def _grouped(
-    base: Input, spec: Mapping[str, Any], clash: Set[str]
-) -> tuple[list[Axis], list[Problem]]:
-    """An axis for each group of cells with apertures of one size.
-
-    Args:
-        base: the file, with its fixed values.
-        spec: a range, and `by`.
-        clash: fields that vary too, and must not.
-    """
-    values = _values({key: of for key, of in spec.items() if key != "by"})
-    texts = [f"has a size for each cell, so {field} cannot vary too" for field in sorted(clash)]
-    if spec["by"] not in BY:
-        texts.append(f"has by = {brief(spec['by'])}; one of {', '.join(map(brief, BY))} is needed")
-    if isinstance(values, str):
-        texts.append(values)
-    if texts or isinstance(values, str):
-        return [], [Problem("", 0, FIELD, text) for text in texts]
-    sizes = _as_numbers_of(base, HOLE, values)
-    names = axis_names(base.parameters.grid.columns, spec["by"])
-    return [Axis(name, sizes) for name in names], not_allowed(base, Axis(HOLE, sizes))
 
 
 def _placed(source: Source, name: str, problems: list[Problem]) -> Iterator[Problem]:
     for problem in problems:
         yield replace(problem, file=shown_path(source.path), line=source.line(name), field=name)
-
-
-def _values(spec: Any) -> tuple[Any, ...] | str:
-    """The values of a spec, or what is wrong with it."""
-    if isinstance(spec, tuple) and not any(isinstance(value, dict) for value in spec):
-        return tuple(dict.fromkeys(spec)) or f"is an empty list; write values, or {_RANGE}"
-    if not isinstance(spec, dict) or spec.keys() != {"from", "to", "step"}:
-        return f"is {brief(spec)}; a list of values or {_RANGE} is needed"
-    low, high, step = (spec[name] for name in ("from", "to", "step"))
-    if not all(is_number(v) for v in (low, high, step)):
-        return f"is {brief(spec)}; {_RANGE} is needed in numbers"
-    if not low < high or not step > 0 or (high - low) / step >= MOST_VALUES:
-        return (
-            f"is {brief(spec)}; from must be below to, and step above 0 with at most "
-            f"{MOST_VALUES} values"
-        )
-    count = math.floor((high - low) / step + 1e-9) + 1
-    return tuple(dict.fromkeys(round(low + n * step, _DECIMALS) for n in range(count)))
-
-
-def _as_numbers_of(base: Input, field: str, values: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Numbers in the type of the field, so that 4 and 4.0 are one value."""
-    value = base.value(field)
-    if isinstance(value, float):
-        return tuple(float(v) if isinstance(v, int) and is_number(v) else v for v in values)
-    return values
-
-
-def is_number(value: Any) -> bool:
-    """Whether a value of TOML is a finite number of a size that a design can have."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < MOST

@@ -4,14 +4,19 @@
 an axis of its own, and a design has one size for each cell.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence, Set
+from typing import Any
 
 import numpy as np
 
 from lumitip.grid import Integers, hexagonal_grid, hexagonal_neighbours
-from lumitip_fab.explore.vary import Changes
+from lumitip_fab.config.load import Input
+from lumitip_fab.config.messages import brief
+from lumitip_fab.errors import Problem
+from lumitip_fab.explore.vary import Axis, Changes, changed, not_allowed
+from lumitip_fab.solve.ranges import as_numbers_of, values_of
 
-FIELD = "mask.cell_holes_mm"
+FIELD, HOLE = "mask.cell_holes_mm", "mask.hole_mm"
 BY = ("cell", "column", "ring", "row")
 """What cells of one size have in common. Rings are counted from the border."""
 
@@ -65,3 +70,28 @@ def _rings(columns: Sequence[int]) -> Integers:
             break
         ring = nearer
     return np.asarray(ring, np.int64)
+
+
+def grouped(
+    base: Input, spec: Mapping[str, Any], clash: Set[str]
+) -> tuple[list[Axis], list[Problem]]:
+    """An axis for each group of cells with apertures of one size.
+
+    Args:
+        base: the file, with its fixed values.
+        spec: a range, and `by`.
+        clash: fields that vary too, and must not.
+    """
+    values = values_of({key: of for key, of in spec.items() if key != "by"})
+    texts = [f"has a size for each cell, so {field} cannot vary too" for field in sorted(clash)]
+    by = str(spec.get("by", ""))
+    if by not in BY:
+        texts.append(f"has by = {brief(by)}; one of {', '.join(map(brief, BY))} is needed")
+    if isinstance(values, str):
+        texts.append(values)
+    if texts or isinstance(values, str):
+        return [], [Problem("", 0, FIELD, text) for text in texts]
+    sizes = as_numbers_of(base, HOLE, values)
+    names = axis_names(base.parameters.grid.columns, by)
+    alike = changed(base, ((FIELD, ()),))
+    return [Axis(name, sizes) for name in names], not_allowed(alike, Axis(HOLE, sizes))

@@ -16,8 +16,9 @@ from lumitip_fab.explore.front import undominated
 from lumitip_fab.explore.pool import pool
 from lumitip_fab.explore.vary import Changes
 from lumitip_fab.pipeline.build import locked
-from lumitip_fab.solve.goals import Task, is_number
+from lumitip_fab.solve.goals import Task
 from lumitip_fab.solve.judge import OBJECTIVES, Job, drive, excesses, judge
+from lumitip_fab.solve.ranges import is_number
 
 FEWEST, POPULATION = 8, 24
 """Designs of a generation: of a short search, and of a long one."""

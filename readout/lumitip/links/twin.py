@@ -153,7 +153,7 @@ def packet_at(layout: Layout, options: Scene, number: int, frames: int) -> Packe
     """The packet of `frames` frames from frame `number` on; deterministic."""
     times_s = (number + np.arange(frames)) / options.rate_hz
     twin = _twin(
-        layout,
+        layout.to_json(),
         Model.from_layout(layout, options.gap_mm),
         options.noise,
         options.bits,
@@ -179,7 +179,9 @@ def scene_at(layout: Layout, options: Scene, t_s: float) -> twin_object.Placed:
 
 
 @lru_cache(maxsize=8)
-def _twin(layout: Layout, model: Model, noise: float, bits: int, seed: int, warm_up: float) -> Twin:
+def _twin(text: str, model: Model, noise: float, bits: int, seed: int, warm_up: float) -> Twin:
+    """The twin of a layout by its text, since layouts that differ in holes alone are equal."""
+    layout = Layout.from_json(text)
     return Twin(layout, model, noise=noise, bits=bits, seed=seed, warm_up=warm_up)
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Model
-from lumitip.twin.rays import REACH_MM, hole_points
+from lumitip.twin.rays import REACH_MM, hole_points, relative_light
 from lumitip.twin.scene import PIXEL_MM
 
 Singles = NDArray[np.float32]
@@ -96,6 +96,14 @@ class Rays:
         self._cell, self._led = np.nonzero(np.hypot(dx, dy) <= REACH_MM)
         self._begin = np.searchsorted(self._cell, np.arange(len(layout) + 1))
         self._model = model
+        # By LED and by cell: the light that its hole scatters, relative to the model's.
+        self._scattered = [
+            np.array([relative_light(model, share, *side) for share in layout.hole_share])
+            for side in (
+                (model.emitter_depth_mm, model.led_exponent),
+                (model.detector_depth_mm, model.detector_exponent),
+            )
+        ]
         points = np.stack(hole_points(model, _ACROSS)) / model.hole_mm
         count, chance = points.shape[1], np.random.default_rng(0)
         die = np.zeros((2, count))
@@ -132,6 +140,8 @@ class Rays:
         weight *= (1.0 + (slope**2).sum(axis=0)) ** -power / way**2
         deep = begin_deep + end_deep
         weight *= built.alpha ** (2 - deep) * (1.0 - built.alpha) ** deep / self._count
+        weight *= np.where(begin_deep, 1.0, self._scattered[0][led, None])
+        weight *= np.where(end_deep, 1.0, self._scattered[1][cell, None])
         weight *= built.led[led, None]
         middle = low + slope * (gap / 2.0)
         return Light(

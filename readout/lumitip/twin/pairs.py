@@ -111,8 +111,9 @@ class Pairs:
         _, first, kind = np.unique(whole, return_index=True, return_inverse=True)
         shares = np.stack([layout.hole_share[led], layout.hole_share[cell]])
         if np.ptp(layout.hole_share):
-            rows = np.stack([kind, *shares])
-            _, first, kind = np.unique(rows, axis=1, return_index=True, return_inverse=True)
+            sizes, size = np.unique(layout.hole_share, return_inverse=True)
+            whole = (kind.ravel() * sizes.size + size[led]) * sizes.size + size[cell]
+            _, first, kind = np.unique(whole, return_index=True, return_inverse=True)
         each = zip(keys[first].tolist(), shares[:, first].T.tolist(), strict=True)
         kinds = tuple((replace(model, gap_mm=g), x, y, (a, b)) for (g, x, y), (a, b) in each)
         return cls(len(layout), cell, kind.ravel(), kinds)

@@ -16,7 +16,7 @@ from lumitip.layout import Layout
 from lumitip.twin.lines import Numbers
 from lumitip.twin.optics import Model
 from lumitip.twin.pairs import Emitter, Pairs, spread, tally
-from lumitip.twin.rays import REACH_MM, hole_points, in_hole
+from lumitip.twin.rays import REACH_MM, hole_points, in_hole, relative_light
 from lumitip.twin.scene import PIXEL_MM, Singles
 
 _DENSE_CELLS = 64  # with more cells, gathering the pixels of each is faster
@@ -221,5 +221,6 @@ class _Scattered:
         hole_x, hole_y = hole_points(self._model, _COARSE)
         square = (x[:, None] - hole * hole_x) ** 2 + (y[:, None] - hole * hole_y) ** 2
         spread = ((1.0 + square / away_mm**2) ** power).mean(axis=1) / away_mm**2
+        spread *= relative_light(self._model, hole, depth_mm, exponent)
         light: Floats = (1.0 - self._model.alpha) * die + self._model.alpha * spread
         return index, light

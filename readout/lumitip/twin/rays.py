@@ -63,7 +63,14 @@ def bundle(
     x, y = hole_points(model, across)
     spread = np.full(x.size, model.alpha / x.size)
     die = (np.zeros(1), np.zeros(1), np.array([1.0 - model.alpha]))
-    led_hole, cell_hole = ((share * x, share * y, spread) for share in holes)
+    sides = (
+        (model.emitter_depth_mm, model.led_exponent),
+        (model.detector_depth_mm, model.detector_exponent),
+    )
+    led_hole, cell_hole = (
+        (share * x, share * y, spread * relative_light(model, share, *side))
+        for share, side in zip(holes, sides, strict=True)
+    )
     parts = [
         _rays(model, (dx_mm, dy_mm), holes, (*source, up), (*target, down))
         for source, up in ((die, model.emitter_depth_mm), (led_hole, 0.0))
@@ -96,6 +103,25 @@ def _rays(
         x + model.gap_mm * across - shift_mm[0], y + model.gap_mm * along - shift_mm[1]
     )
     return np.stack([x, y, across, along, weight])[:, through]
+
+
+def relative_light(model: Model, share: float, depth_mm: float, exponent: float) -> float:
+    """Light that falls from a die on a hole, relative to that on one of the model's size.
+
+    What a hole scatters is in proportion to it. Of a lobe cos(angle) ** m, a circle seen under the
+    half angle a holds 1 - cos(a) ** (m + 1).
+
+    Args:
+        model: optics; for the size of its hole, which counts as a circle here.
+        share: size of the hole, relative to the model's.
+        depth_mm: of the die, equivalent.
+        exponent: of its lobe.
+    """
+
+    def held(radius_mm: float) -> float:
+        return 1.0 - float((1.0 + (radius_mm / depth_mm) ** 2) ** (-(exponent + 1.0) / 2.0))
+
+    return held(share * model.hole_mm / 2.0) / held(model.hole_mm / 2.0)
 
 
 def in_hole(model: Model, share: float = 1.0) -> Callable[[Floats, Floats], np.ndarray]:

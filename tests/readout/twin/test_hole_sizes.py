@@ -9,13 +9,15 @@ import pytest
 from lumitip import Layout
 from lumitip.grid import Floats
 from lumitip.twin import HalfPlane, Model, Twin
-from lumitip.twin.rays import bundle
+from lumitip.twin.rays import bundle, relative_light
 
 SIZES = np.random.default_rng(4).uniform(1.5, 4.0, 32).round(2)
 
 
 def sized(layout: Layout, sizes_mm: Floats) -> Layout:
-    return replace(layout, hole_share=sizes_mm / layout.optics.hole_mm)
+    mean_mm = float(sizes_mm.mean())
+    optics = replace(layout.optics, hole_mm=mean_mm)
+    return replace(layout, optics=optics, hole_share=sizes_mm / mean_mm)
 
 
 def test_the_file_has_a_size_for_each_cell_only_where_they_differ(layout: Layout) -> None:
@@ -28,12 +30,16 @@ def test_the_file_has_a_size_for_each_cell_only_where_they_differ(layout: Layout
     assert sized(layout, SIZES) == layout, "holes belong to no cell's wiring"
 
 
-def test_holes_of_one_size_are_those_of_the_optics(layout: Layout) -> None:
-    wide = Twin(replace(layout, optics=replace(layout.optics, hole_mm=3.0)))
-    alike = Twin(sized(layout, np.full(32, 3.0)))
-    scene = HalfPlane(offset_mm=1.0, angle_deg=15.0)
-    assert alike.drive == pytest.approx(wide.drive, rel=1e-9)
-    assert alike.values(scene) == pytest.approx(wide.values(scene), abs=1e-6)
+@pytest.mark.parametrize(("share", "exponent"), [(0.6, 1.0), (1.4, 2.0), (1.0, 3.0)])
+def test_a_hole_scatters_the_light_of_its_die_that_falls_on_it(
+    share: float, exponent: float
+) -> None:
+    """Against random directions of a lobe cos(angle) ** m, counted where they meet the mask."""
+    model, depth_mm = Model(), 0.8
+    slope = np.random.default_rng(1).random(400_000) ** (1.0 / (exponent + 1.0))  # cos(angle)
+    away_mm = depth_mm * np.sqrt(1.0 - slope**2) / slope
+    own, usual = (np.mean(away_mm < model.hole_mm / 2.0 * size) for size in (share, 1.0))
+    assert relative_light(model, share, depth_mm, exponent) == pytest.approx(own / usual, rel=0.01)
 
 
 def test_light_between_two_sizes_is_that_of_points_drawn_in_both_holes() -> None:
@@ -49,8 +55,13 @@ def test_light_between_two_sizes_is_that_of_points_drawn_in_both_holes() -> None
         slope = (ends[0] + [[dx_mm], [dy_mm]] - ends[1]) / model.gap_mm
         light = (1.0 + (slope**2).sum(axis=0)) ** -2.5 / model.gap_mm**2
         middle = ends[1] + slope * model.gap_mm / 2.0
-        rays = bundle(model, dx_mm, dy_mm, (1.5 / model.hole_mm, 3.5 / model.hole_mm))
-        assert rays.weight.sum() == pytest.approx(light.mean(), rel=0.01)
+        shares = 1.5 / model.hole_mm, 3.5 / model.hole_mm
+        rays = bundle(model, dx_mm, dy_mm, shares)
+        scattered = relative_light(model, shares[0], model.emitter_depth_mm, model.led_exponent)
+        scattered *= relative_light(
+            model, shares[1], model.detector_depth_mm, model.detector_exponent
+        )
+        assert rays.weight.sum() == pytest.approx(scattered * light.mean(), rel=0.01)
         for found, places in zip(rays.at(model.gap_mm / 2.0), middle, strict=True):
             there = np.average(places, weights=light)
             assert np.average(found, weights=rays.weight) == pytest.approx(there, abs=0.01)
@@ -73,6 +84,14 @@ def test_a_narrow_hole_makes_the_border_of_a_shadow_sharp_at_its_cell_alone(
     assert steepest[1] > 1.1 * steepest[0]
     far = np.hypot(layout.x_mm - layout.x_mm[middle], layout.y_mm - layout.y_mm[middle]) > 13.0
     assert other[:, far] == pytest.approx(usual[:, far], abs=0.5)
+
+
+def test_a_narrow_hole_makes_its_cell_dimmer(layout: Layout) -> None:
+    sizes = np.full(32, 2.5)
+    middle = int(np.hypot(layout.x_mm, layout.y_mm).argmin())
+    sizes[middle] = 1.5
+    usual, other = Twin(layout).drive[middle], Twin(sized(layout, sizes)).drive[middle]
+    assert 0.4 * usual < other < 0.9 * usual
 
 
 def test_every_way_to_compute_a_scene_knows_the_sizes(layout: Layout) -> None:

@@ -143,7 +143,7 @@ def test_light_of_neighbours_grows_with_the_gap(twin: Twin) -> None:
     shares = []
     for gap_mm in (2.0, 3.0, 6.0):
         pairs = Pairs.of(twin.layout, Emitter(Model.from_layout(twin.layout, gap_mm)))
-        own = [k for k, (_, x, y) in enumerate(pairs.kinds) if x == y == 0.0]
+        own = [k for k, (_, x, y, _) in enumerate(pairs.kinds) if x == y == 0.0]
         shares.append(1.0 - float(pairs.light[own].sum() / pairs.full.max()))
     assert shares == sorted(shares)
     assert shares[0] < 0.05

@@ -41,7 +41,8 @@ def derive_cells(p: Parameters, faults: Diagnostics) -> Cells:
         faults.add("many_cells", count=count, most_cells=MOST_CELLS)
     if p.mask.cell_holes_mm and len(p.mask.cell_holes_mm) != count:
         faults.add("cell_holes", holes=len(p.mask.cell_holes_mm), count=count)
-    _refuse_close_apertures(p, faults)
+    else:
+        _refuse_close_apertures(p, faults)
     if not LEAST_CELLS <= count <= MOST_CELLS:
         nowhere, none = np.zeros(0), np.zeros(0, dtype=np.int64)
         return Cells(nowhere, nowhere, none, none, none.reshape(0, 2))
@@ -54,15 +55,28 @@ def derive_cells(p: Parameters, faults: Diagnostics) -> Cells:
 
 def least_web_mm(p: Parameters) -> float:
     """The narrowest web between the apertures of neighbouring cells."""
-    count = sum(p.grid.columns)
-    sizes, pairs = np.array(p.mask.holes_mm(count)), hexagonal_neighbours(p.grid.columns)
-    reach = sizes[pairs].sum(axis=1).max(initial=0.0) / 2.0
-    return p.grid.pitch_mm - float(reach)
+    sizes, pairs = p.mask.holes_mm(sum(p.grid.columns)), hexagonal_neighbours(p.grid.columns)
+    apart = [p.grid.pitch_mm - (sizes[a] + sizes[b]) / 2.0 for a, b in pairs.tolist()]
+    return min(apart, default=p.grid.pitch_mm)
+
+
+def holes_meet(p: Parameters) -> bool:
+    """Whether apertures of cells that are no neighbours come too close, by the circles round them:
+    between small ones, two wide ones may."""
+    grid = hexagonal_grid(p.grid.columns, p.grid.pitch_mm)
+    centres = np.stack([grid.x_mm, grid.y_mm])
+    apart = np.linalg.norm(centres[:, :, None] - centres[:, None], axis=0)
+    round_ = p.mask.hole_shape == "circle" or p.mask.route == "cut"
+    reach = np.array(p.mask.holes_mm(sum(p.grid.columns))) / (2.0 if round_ else math.sqrt(3.0))
+    near = apart - reach - reach[:, None] < LEAST_WEB_MM
+    return bool((near & (apart > 1.1 * p.grid.pitch_mm)).any())
 
 
 def _refuse_close_apertures(p: Parameters, faults: Diagnostics) -> None:
     web = least_web_mm(p)
     if web >= LEAST_WEB_MM:
+        if p.mask.cell_holes_mm and holes_meet(p):
+            faults.add("apertures_meet", least_web_mm=LEAST_WEB_MM)
         return
     pitch = p.grid.pitch_mm
     faults.add(

@@ -41,6 +41,7 @@ def fingerprint(config: Input, layout: Layout, conditions: MaskConditions) -> st
     """
     kinds = {name: entry.distribution for name, entry in config.catalogue.tolerances}
     places = (layout.x_mm.tolist(), layout.y_mm.tolist())
+    own = layout.hole_mm.tolist() if (layout.hole_share != 1.0).any() else ()
     model = Model.from_layout(layout, conditions.gap_mm)
     inputs = [
         MODEL_VERSION,
@@ -50,6 +51,7 @@ def fingerprint(config: Input, layout: Layout, conditions: MaskConditions) -> st
         config.parameters.backing.variant,
         spreads(config),
         kinds,
+        *own,
     ]
     return hashlib.sha256(canonical(inputs).encode()).hexdigest()[:_LENGTH]
 
