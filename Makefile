@@ -13,7 +13,7 @@ CHECK = $(BIN)/lumitip-fab check --out $(OUT) --junit $(OUT)/checks.xml --report
 .DEFAULT_GOAL := help
 # Where this is set, as in many containers, every process would compile all that it imports.
 unexport PYTHONDONTWRITEBYTECODE
-.PHONY: help outputs check readout watch test lint fuzz bench pictures schema golden clean
+.PHONY: help outputs check readout watch test lint fuzz bench pictures schema golden dist clean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
@@ -82,6 +82,9 @@ schema: $(FAB) ## write design/schema.json anew
 
 golden: $(DEV) ## write the tests' reference files anew; read the diff before committing
 	LUMITIP_GOLDEN=1 $(BIN)/python -m pytest -q -m golden
+
+dist: $(DEV) ## build wheel and sdist into dist, the same bytes each time
+	$(BIN)/python -m release.dist dist
 
 clean: ## remove what was generated, and .venv
 	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache
