@@ -13,7 +13,7 @@ CHECK = $(BIN)/lumitip-fab check --out $(OUT) --junit $(OUT)/checks.xml --report
 .DEFAULT_GOAL := help
 # Where this is set, as in many containers, every process would compile all that it imports.
 unexport PYTHONDONTWRITEBYTECODE
-.PHONY: help outputs check readout watch test lint fuzz bench pictures schema golden dist clean
+.PHONY: help outputs check readout watch test lint fuzz bench pictures schema golden dist lock clean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
@@ -85,6 +85,9 @@ golden: $(DEV) ## write the tests' reference files anew; read the diff before co
 
 dist: $(DEV) ## build wheel and sdist into dist, the same bytes each time
 	$(BIN)/python -m release.dist dist
+
+lock: $(DEV) ## write the lock files anew: constraints.txt with the hashes of all files
+	$(BIN)/python -m release.lock
 
 clean: ## remove what was generated, and .venv
 	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache
