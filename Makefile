@@ -48,10 +48,11 @@ watch: $(FAB) ## build whenever DESIGN is saved
 test: $(DEV) ## run the tests
 	$(BIN)/python -m pytest -n auto --dist loadfile
 
-lint: $(DEV) ## format, lint, types, schema
+lint: $(DEV) ## format, lint, types, licences, schema
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+	REUSE_ENCODING_MODULE=charset_normalizer $(BIN)/reuse lint --lines
 	@$(BIN)/lumitip-fab schema | diff -u design/schema.json - || \
 	  { echo "design/schema.json is stale: make schema"; exit 1; }
 
