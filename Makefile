@@ -13,7 +13,7 @@ CHECK = $(BIN)/lumitip-fab check --out $(OUT) --junit $(OUT)/checks.xml --report
 .DEFAULT_GOAL := help
 # Where this is set, as in many containers, every process would compile all that it imports.
 unexport PYTHONDONTWRITEBYTECODE
-.PHONY: help outputs check readout watch test lint fuzz bench pictures schema golden dist lock clean
+.PHONY: help outputs check readout watch test lint fuzz bench pictures schema golden dist lock bills clean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
@@ -89,6 +89,9 @@ dist: $(DEV) ## build wheel and sdist into dist, the same bytes each time
 
 lock: $(DEV) ## write the lock files anew: constraints.txt with the hashes of all files
 	$(BIN)/python -m release.lock
+
+bills: outputs $(DEV) ## write CycloneDX bills of software, and of the hardware in OUT, into dist
+	$(BIN)/python -m release.bills $(OUT) dist
 
 clean: ## remove what was generated, and .venv
 	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache

@@ -29,7 +29,7 @@ _PIN = re.compile(r"^([A-Za-z0-9][\w.-]*)==([^\s;\\]+)", re.MULTILINE)
 
 def pins(text: str) -> dict[str, str]:
     """Version of each package of a constraints or lock file, by its normalised name."""
-    found = {_normalised(name): version for name, version in _PIN.findall(text)}
+    found = {normalised(name): version for name, version in _PIN.findall(text)}
     if not found:
         raise ReleaseError("no line such as 'numpy==2.0.0' was found. Run: make lock")
     return found
@@ -52,7 +52,7 @@ def lock_faults(root: Path) -> Iterator[str]:
         chosen = list(extras) if options == ("--all-extras",) else [options[1]]
         for line in (*project["dependencies"], *_requirements(extras, chosen)):
             asked = Requirement(line)
-            version = locked.get(_normalised(asked.name), "")
+            version = locked.get(normalised(asked.name), "")
             if not (version and asked.specifier.contains(version)):
                 yield f"{name}: {line} is asked for, {version or 'nothing'} is locked"
         if options == ("--all-extras",):
@@ -69,7 +69,8 @@ def _requirements(extras: dict[str, list[str]], chosen: list[str]) -> Iterator[s
             yield line
 
 
-def _normalised(name: str) -> str:
+def normalised(name: str) -> str:
+    """A package's name as package indexes compare it."""
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
