@@ -15,10 +15,10 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(scope="session")
 def repository_files() -> list[str]:
-    """Paths of all files that belong to the repository."""
+    """Paths of all files that git tracks: what tests leave in the folder is not among them."""
     if not (ROOT / ".git").exists():
         pytest.skip("this folder is no clone: git clone the repository")
-    command = ["git", "-c", "safe.directory=*", "ls-files", "-co", "--exclude-standard"]
+    command = ["git", "-c", "safe.directory=*", "ls-files"]
     listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     return [name for name in listed.splitlines() if (ROOT / name).is_file()]
 
