@@ -13,7 +13,7 @@ CHECK = $(BIN)/lumitip-fab check --out $(OUT) --junit $(OUT)/checks.xml --report
 .DEFAULT_GOAL := help
 # Where this is set, as in many containers, every process would compile all that it imports.
 unexport PYTHONDONTWRITEBYTECODE
-.PHONY: help outputs check readout watch test lint fuzz bench pictures schema golden clean
+.PHONY: help outputs check readout watch test lint fuzz bench pictures schema golden dist lock bills clean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
@@ -48,10 +48,11 @@ watch: $(FAB) ## build whenever DESIGN is saved
 test: $(DEV) ## run the tests
 	$(BIN)/python -m pytest -n auto --dist loadfile
 
-lint: $(DEV) ## format, lint, types, schema
+lint: $(DEV) ## format, lint, types, licences, schema
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+	REUSE_ENCODING_MODULE=charset_normalizer $(BIN)/reuse lint --lines
 	@$(BIN)/lumitip-fab schema | diff -u design/schema.json - || \
 	  { echo "design/schema.json is stale: make schema"; exit 1; }
 
@@ -82,6 +83,15 @@ schema: $(FAB) ## write design/schema.json anew
 
 golden: $(DEV) ## write the tests' reference files anew; read the diff before committing
 	LUMITIP_GOLDEN=1 $(BIN)/python -m pytest -q -m golden
+
+dist: $(DEV) ## build wheel and sdist into dist, the same bytes each time
+	$(BIN)/python -m release.dist dist
+
+lock: $(DEV) ## write the lock files anew: constraints.txt with the hashes of all files
+	$(BIN)/python -m release.lock
+
+bills: outputs $(DEV) ## write CycloneDX bills of software, and of the hardware in OUT, into dist
+	$(BIN)/python -m release.bills $(OUT) dist
 
 clean: ## remove what was generated, and .venv
 	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache

@@ -1,15 +1,18 @@
-"""Run README's first command on a bare Debian 12, as a new user would.
+"""Run a command on a bare Debian, as a new user would: README's first one, on Debian 12.
 
 debootstrap makes a root file system with the packages that README's install line names, and those
 they depend on. The committed state of this repository is cloned into it, and an ordinary user runs
-the command. The exit code is the command's.
+the command. The exit code is the command's. Another release of Debian has another Python.
 
 Needs root, debootstrap, unshare and git. The mirror is the one that this machine's apt uses, or
 `DEBIAN_MIRROR`; pip's configuration is this machine's.
 
-    sudo -E python3 .ci/bare_machine.py [FOLDER]     # FOLDER: where the file system is made
+    sudo -E python3 .ci/bare_machine.py [--folder FOLDER] [--release RELEASE] [COMMAND …]
+
+FOLDER is where the file system is made.
 """
 
+import argparse
 import ast
 import os
 import re
@@ -22,7 +25,8 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-RELEASE = "bookworm"
+RELEASES = ("bookworm", "trixie")
+"""Debian 12 and 13."""
 USER = "maker"
 _PASSED_ON = re.compile(r"(PIP_.*|(https?|no|all)_proxy)", re.IGNORECASE)
 
@@ -48,15 +52,18 @@ def first_command(readme: str) -> list[str]:
 
 
 def mirror() -> str:
-    """Where this machine's apt has Debian 12 from."""
+    """Where this machine's apt has its Debian from; a mirror has all releases."""
     if "DEBIAN_MIRROR" in os.environ:
         return os.environ["DEBIAN_MIRROR"]
     formatted = ["--format", "$(RELEASE) $(REPO_URI)", "Created-By: Packages"]
     for line in _output("apt-get", "indextargets", *formatted).splitlines():
         release, _, uri = line.partition(" ")
-        if release == RELEASE:
+        if release in RELEASES:
             return uri
-    raise SetupError(f"apt of this machine has no {RELEASE}: set DEBIAN_MIRROR to a Debian mirror")
+    raise SetupError(
+        f"apt of this machine has none of {', '.join(RELEASES)}: set DEBIAN_MIRROR to a Debian "
+        "mirror"
+    )
 
 
 def pip_settings(listed: str) -> dict[str, str]:
@@ -83,17 +90,18 @@ def local_paths(values: list[str]) -> list[Path]:
     return sorted(path for path in paths if path.exists())
 
 
-def main(folder: Path) -> int:
-    """Make the file system, run the command in it, remove it; returns the command's exit code."""
+def main(folder: Path, release: str, command: list[str]) -> int:
+    """Make the file system, run the command in it, remove it; returns the command's exit code.
+    Without a command README's first one is run."""
     if os.geteuid() != 0:
         raise SetupError("needs root, because debootstrap makes a root file system: sudo -E …")
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    packages, command = install_line(readme), first_command(readme)
-    print(f"Bare Debian 12 with {' '.join(packages)}: {shlex.join(command)}", flush=True)
+    packages, command = install_line(readme), command or first_command(readme)
+    print(f"Bare Debian {release} with {' '.join(packages)}: {shlex.join(command)}", flush=True)
     root = folder / "root"
     began = time.monotonic()
     try:
-        _bootstrap(root, packages)
+        _bootstrap(root, release, packages)
         shown = f"{time.monotonic() - began:.0f} s"
         print(f"{shown}: the file system is made, {_size_mb(root):.0f} MB", flush=True)
         code = _run(root, command)
@@ -103,13 +111,13 @@ def main(folder: Path) -> int:
     return code
 
 
-def _bootstrap(root: Path, packages: list[str]) -> None:
+def _bootstrap(root: Path, release: str, packages: list[str]) -> None:
     """A root file system of minimal size with some packages, and this repository in it."""
     names = ",".join(packages)
     options = root / "etc/dpkg/dpkg.cfg.d"
     options.mkdir(parents=True)
     (options / "unsafe-io").write_text("force-unsafe-io\n", encoding="ascii")  # four times faster
-    _output("debootstrap", "--variant=minbase", f"--include={names}", RELEASE, str(root), mirror())
+    _output("debootstrap", "--variant=minbase", f"--include={names}", release, str(root), mirror())
     shutil.copy("/etc/hosts", root / "etc/hosts")
     _output("chroot", str(root), "useradd", "--create-home", "--shell", "/bin/sh", USER)
     home = root / "home" / USER
@@ -158,8 +166,13 @@ def _size_mb(root: Path) -> float:
 
 
 if __name__ == "__main__":
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--folder", type=Path)
+    parser.add_argument("--release", choices=RELEASES, default=RELEASES[0])
+    parser.add_argument("command", nargs="*")
+    asked = parser.parse_args()
     try:
-        with tempfile.TemporaryDirectory(dir=sys.argv[1] if len(sys.argv) > 1 else None) as made:
-            sys.exit(main(Path(made)))
+        with tempfile.TemporaryDirectory(dir=asked.folder) as made:
+            sys.exit(main(Path(made), asked.release, asked.command))
     except (SetupError, OSError) as error:
         sys.exit(f"bare machine: {error}")

@@ -1,6 +1,7 @@
 """Installation: what the Makefile's setup refuses and reports, and what the documents advertise."""
 
 import importlib.util
+import os
 import re
 import subprocess
 import sys
@@ -16,6 +17,7 @@ from lumitip_fab.system_libraries import LIBRARIES, SystemLibrary, libraries_mes
 ROOT = Path(__file__).parents[2]
 ABSENT = SystemLibrary("libNoSuchThing.so.9", "libno9", "no-glvnd", "no")
 MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
+RUN = (ROOT / ".ci/run").read_text(encoding="utf-8")
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 READING = (ROOT / "docs/reading.md").read_text(encoding="utf-8")
 START = (ROOT / "docs/start.md").read_text(encoding="utf-8")
@@ -198,6 +200,13 @@ def test_the_bare_machine_has_what_readme_names_and_runs_its_command(bare: Modul
         bare.install_line("nothing")
     with pytest.raises(bare.SetupError, match="make"):
         bare.first_command("nothing")
+
+
+def test_the_build_server_tries_the_wheel_on_a_newer_python(bare: ModuleType) -> None:
+    command = re.search(r"bare_machine\.py --release (\w+) (\S+)$", RUN, re.MULTILINE)
+    assert command
+    assert command[1] in bare.RELEASES[1:]
+    assert os.access(ROOT / command[2], os.X_OK)
 
 
 def test_settings_of_pip_reach_the_bare_machine(bare: ModuleType, tmp_path: Path) -> None:

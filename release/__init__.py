@@ -1,0 +1,1 @@
+"""Tools that prepare a release: distributions, lock file and bills. Not installed."""
