@@ -7,7 +7,8 @@ the command. The exit code is the command's. Another release of Debian has anoth
 Needs root, debootstrap, unshare and git. The mirror is the one that this machine's apt uses, or
 `DEBIAN_MIRROR`; pip's configuration is this machine's.
 
-    sudo -E python3 .ci/bare_machine.py [--folder FOLDER] [--release RELEASE] [COMMAND …]
+    sudo -E python3 .ci/bare_machine.py [--folder FOLDER] [--release RELEASE]
+        [--if-possible] [COMMAND …]
 
 FOLDER is where the file system is made.
 """
@@ -169,10 +170,14 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("--folder", type=Path)
     parser.add_argument("--release", choices=RELEASES, default=RELEASES[0])
+    parser.add_argument(
+        "--if-possible", action="store_true", help="pass where no such system can be made"
+    )
     parser.add_argument("command", nargs="*")
     asked = parser.parse_args()
     try:
         with tempfile.TemporaryDirectory(dir=asked.folder) as made:
             sys.exit(main(Path(made), asked.release, asked.command))
     except (SetupError, OSError) as error:
-        sys.exit(f"bare machine: {error}")
+        print(f"bare machine: {error}", file=sys.stderr)
+        sys.exit(0 if asked.if_possible else 1)
