@@ -7,6 +7,10 @@ from typing import Any
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 
+from api_pages import api_pages
+from catalogue_pages import catalogue_pages
+from command_pages import command_pages
+from parameter_pages import parameter_pages
 from repository_pages import DOCS, PROJECT, ROOT, linked, rewritten, source_pages
 
 
@@ -46,3 +50,7 @@ def _pages() -> Iterator[tuple[str, str]]:
         if page in project:
             yield project[page], text
     yield from source_pages(found)
+    yield from parameter_pages()
+    yield from catalogue_pages()
+    yield from command_pages()
+    yield from api_pages()

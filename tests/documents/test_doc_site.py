@@ -2,55 +2,24 @@
 page. A damage in a page fails the build."""
 
 import shutil
-import subprocess
-import sys
-from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import markdown
 import pytest
-import yaml
 from lxml import html
 from markdown_it import MarkdownIt
 from playwright.sync_api import sync_playwright
 
+from documentation_site import CONFIG, build_site, nav_pages
 from markdown_pages import PAGES, ROOT, links
 from programs import program
 from repository_pages import PROJECT, linked, page_of, rewritten
 
-CONFIG = yaml.safe_load((ROOT / "mkdocs.yml").read_text("utf-8"))
 EXTENSIONS = [next(iter(e)) if isinstance(e, dict) else e for e in CONFIG["markdown_extensions"]]
 INDEX = ROOT / "docs/index.md"
-SHOWN = ("index.html", "making.html", "estimation.html", "project/CHANGELOG.html")
+SHOWN = ("index.html", "making.html", "reference/parameters.html", "project/CHANGELOG.html")
 SIZES = {"phone": {"width": 390, "height": 844}, "desk": {"width": 1440, "height": 900}}
-
-
-def build_site(root: Path, out: Path) -> subprocess.CompletedProcess[str]:
-    """Build the site of a repository, as `make site` does."""
-    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(out)]
-    return subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
-
-
-@pytest.fixture(scope="session")
-def doc_site(once: Callable[..., Path]) -> Path:
-    """The built documentation site. Do not change it."""
-
-    def fill(folder: Path) -> None:
-        done = build_site(ROOT, folder)
-        assert done.returncode == 0, done.stdout + done.stderr
-
-    return once("documentation", fill)
-
-
-def nav_pages(node: Any = None) -> Iterator[str]:
-    """Paths in the site of the pages of the navigation, in order."""
-    node = CONFIG["nav"] if node is None else node
-    if isinstance(node, str):
-        yield node
-    else:
-        for inner in node.values() if isinstance(node, dict) else node:
-            yield from nav_pages(inner)
 
 
 def test_the_site_builds_without_a_warning(doc_site: Path) -> None:
