@@ -10,6 +10,7 @@ from mkdocs.structure.files import File, Files
 from api_pages import api_pages
 from catalogue_pages import catalogue_pages
 from command_pages import command_pages
+from gallery_page import gallery_pages
 from parameter_pages import parameter_pages
 from repository_pages import DOCS, PROJECT, ROOT, linked, rewritten, source_pages
 
@@ -52,5 +53,6 @@ def _pages() -> Iterator[tuple[str, str]]:
     yield from source_pages(found)
     yield from parameter_pages()
     yield from catalogue_pages()
+    yield from gallery_pages()
     yield from command_pages()
     yield from api_pages()
