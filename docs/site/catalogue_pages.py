@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from markdown_text import code, plain, table
+from markdown_text import code, plain, prose, table
 from repository_pages import ROOT
 
 FOLDER = "reference/parts"
@@ -25,7 +25,7 @@ def catalogue_pages() -> Iterator[tuple[str, str]]:
     rows = []
     for file in FILES:
         entries = {n: e for n, e in read(file).items() if isinstance(e, dict)}
-        rows.append([f"[{file.stem}]({file.stem}.md)", str(len(entries)), plain(about(file))])
+        rows.append([f"[{file.stem}]({file.stem}.md)", str(len(entries)), prose(about(file))])
         yield f"{FOLDER}/{file.stem}.md", _page(file)
     yield f"{FOLDER}/index.md", _INTRO + table(("file", "entries", "about"), rows)
 
@@ -46,7 +46,7 @@ def _page(file: Path) -> str:
     contents = read(file)
     top = {name: value for name, value in contents.items() if not isinstance(value, dict)}
     title = file.stem.replace("_", " ").capitalize().replace("Led", "LED").replace("Esd", "ESD")
-    parts = [f"# {title}\n\n{plain(about(file))}\n\nFile: `design/parts/{file.name}`.\n\n"]
+    parts = [f"# {title}\n\n{prose(about(file))}\n\nFile: `design/parts/{file.name}`.\n\n"]
     parts += [_figures(top)] if top else []
     for name, entry in contents.items():
         if isinstance(entry, dict):

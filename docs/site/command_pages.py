@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from lumitip.cli import command_parser as readout_parser
 from lumitip_fab.cli import command_parser as fab_parser
-from markdown_text import code, plain, table
+from markdown_text import code, prose, table
 
 PARSERS = {"lumitip": readout_parser, "lumitip-fab": fab_parser}
 _ABOUT = {
@@ -37,7 +37,7 @@ def _described(parser: argparse.ArgumentParser) -> str:
     usage = parser.format_usage().removeprefix("usage: ")
     rows = [_row(action, parser) for action in parser._actions if action.help]
     shown = table(("argument", "default", "meaning"), rows)
-    return f"{plain(parser.description or '')}\n\n```text\n{usage}```\n\n{shown}"
+    return f"{prose(parser.description or '')}\n\n```text\n{usage}```\n\n{shown}"
 
 
 def _row(action: argparse.Action, parser: argparse.ArgumentParser) -> tuple[str, str, str]:
@@ -48,4 +48,4 @@ def _row(action: argparse.Action, parser: argparse.ArgumentParser) -> tuple[str,
     default = action.default if action.option_strings and action.nargs != 0 else None
     shown = "" if default in (None, [], argparse.SUPPRESS) else code(str(default))
     text = (action.help or "") % {**vars(action), "prog": parser.prog}
-    return code(f"{name} {value}".strip()), shown, plain(text)
+    return code(f"{name} {value}".strip()), shown, prose(text)

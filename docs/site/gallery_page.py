@@ -10,7 +10,7 @@ import numpy as np
 import lumitip_fab
 from design_drawings import outline_points, paint_face
 from dimensioned import Drawing
-from markdown_text import code, plain, table
+from markdown_text import code, plain, prose, table
 from preset_figures import FILE, PRESETS
 
 _INCHES_PER_MM = 0.045
@@ -42,7 +42,7 @@ def gallery_pages() -> Iterator[tuple[str, str]]:
         name = plain(tomllib.loads(text)["name"])
         shown.append(
             f"## {name}\n\n![Face of the finger: {name}](images/presets/{preset.stem}.svg)\n\n"
-            f"{plain(about(text))}{left_out(preset)}\n\n{code(f'design/presets/{preset.name}')}\n\n"
+            f"{prose(about(text))}{left_out(preset)}\n\n{code(f'design/presets/{preset.name}')}\n\n"
         )
         yield f"images/presets/{preset.stem}.svg", face(preset).svg()
     stated = plain(figures["published"]["price_stated"].split(", ")[1])

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from design_drawings import drawings
-from markdown_text import code, plain, table
+from markdown_text import code, prose, table
 from repository_pages import ROOT
 
 PAGE = "reference/parameters.md"
@@ -36,7 +36,7 @@ def _sections(schema: dict[str, Any]) -> Iterator[str]:
     yield f"## At the top of the file\n\n{_table('', top)}"
     for name, model in sorted(tables.items()):
         described = schema["$defs"][model]
-        yield f"## `[{name}]` {{ #{name} }}\n\n{plain(described['description'])}\n\n"
+        yield f"## `[{name}]` {{ #{name} }}\n\n{prose(described['description'])}\n\n"
         for drawn, drawing in drawings().items():
             if name == drawing.section:
                 yield f"![{drawing.title}](images/{drawn}.svg)\n\n{drawing.title}.\n\n"
@@ -50,7 +50,7 @@ def _table(section: str, fields: dict[str, Any]) -> str:
             unit(shape["title"]),
             code(json.dumps(shape["default"], ensure_ascii=False)) if "default" in shape else "",
             allowed(shape),
-            plain(shape.get("description", "")),
+            prose(shape.get("description", "")),
         ]
         for name, shape in sorted(fields.items())
     )

@@ -44,6 +44,7 @@ def test_the_reference_has_every_parameter(doc_site: Path) -> None:
     shown = set(re.findall(r'<span id="([^"]+)"></span><code>', text))
     assert shown == _fields()
     assert len(shown) > 140
+    assert "Name of a filament in <code>parts/filaments.toml</code>." in text
     assert "Distance of a cell to each of its neighbours (mm)." in text
 
 
