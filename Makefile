@@ -7,13 +7,14 @@ FAB := .venv/.lumitip-fab
 READOUT := .venv/.lumitip-readout
 DEV := .venv/.lumitip-dev
 DOCS := .venv/.lumitip-docs
+SITE := .venv/.lumitip-site
 BENCHES = fab boards estimation second_light pose_speed dead_cells learning tolerance goals accept real_frame real_misfit processing protocol links twin environments mujoco view page acceptance corpus
 CHECK = $(BIN)/lumitip-fab check --out $(OUT) --junit $(OUT)/checks.xml --report $(OUT)/checks.json
 
 .DEFAULT_GOAL := help
 # Where this is set, as in many containers, every process would compile all that it imports.
 unexport PYTHONDONTWRITEBYTECODE
-.PHONY: help outputs check readout watch test lint fuzz bench pictures schema golden dist lock bills clean
+.PHONY: help outputs check readout watch test lint fuzz bench pictures site schema golden dist lock bills clean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
@@ -30,6 +31,9 @@ $(DEV): $(FAB)
 
 $(DOCS): $(FAB)
 	@$(PYTHON) generators/setup_venv.py docs && touch $@
+
+$(SITE): $(FAB)
+	@$(PYTHON) generators/setup_venv.py site && touch $@
 
 outputs: $(FAB) ## build DESIGN into OUT, check it, and write its page
 	@$(BIN)/lumitip-fab build $(DESIGN) --out $(OUT)
@@ -78,6 +82,10 @@ pictures: outputs $(DOCS) ## draw the pictures of README and docs from OUT
 	$(BIN)/python docs/contacts.py
 	$(BIN)/python docs/twin_figures.py
 
+site: $(SITE) ## build the documentation site into site/; a broken link is an error
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
+	@echo "open site/index.html"
+
 schema: $(FAB) ## write design/schema.json anew
 	$(BIN)/lumitip-fab schema > design/schema.json
 
@@ -94,5 +102,5 @@ bills: outputs $(DEV) ## write CycloneDX bills of software, and of the hardware 
 	$(BIN)/python -m release.bills $(OUT) dist
 
 clean: ## remove what was generated, and .venv
-	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache site
 	find outputs -mindepth 1 ! -name README.md -delete

@@ -24,6 +24,7 @@ SIZES = {
     "readout": "live view, Bluetooth and serial line; 20 MB to download",
     "dev": "tests, linters and a second opinion on every format; 0.5 GB to download, "
     "1.2 GB in .venv, 2 to 5 minutes",
+    "site": "MkDocs, for the documentation site; 20 MB to download",
     "docs": "VTK for the documents' pictures; 0.1 GB to download",
 }
 LARGE_MB = 5

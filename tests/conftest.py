@@ -24,6 +24,7 @@ LONGEST = (
     "checks/test_unusual.py",
     "checks/test_patches.py",
     "checks/test_presets.py",
+    "documents/test_tutorials.py",
     "fab/test_build.py",
     "fab/test_slice.py",
 )

@@ -1,11 +1,20 @@
 """Looking at the page of an output folder."""
 
+import importlib.util
 from collections.abc import Callable
+from pathlib import Path
 
 from playwright.sync_api import Page
 
 Opened = Callable[..., Page]
 """`opened("#cell-17", folder, color_scheme="dark")`: the page in a browser."""
+
+
+def axe() -> str:
+    """The script of axe-core."""
+    spec = importlib.util.find_spec("axe_playwright_python")
+    assert spec is not None and spec.origin is not None, "pip install axe-playwright-python"
+    return (Path(spec.origin).parent / "axe.min.js").read_text(encoding="utf-8")
 
 
 def marked(tab: Page, panel: str) -> list[int]:

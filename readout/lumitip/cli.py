@@ -41,7 +41,7 @@ def _run_command(arguments: Sequence[str] | None) -> int:
 
     from lumitip.errors import LumitipError
 
-    options = _parser().parse_args(arguments)
+    options = command_parser().parse_args(arguments)
     level = logging.INFO if options.verbose else logging.WARNING
     logging.basicConfig(level=level, format="%(message)s")
     try:
@@ -69,7 +69,8 @@ def installed_version() -> str:
         return "lumitip, not installed: run from its source folder"
 
 
-def _parser() -> "ArgumentParser":
+def command_parser() -> "ArgumentParser":
+    """The parser of the command, with all subcommands."""
     import argparse
     from pathlib import Path
 

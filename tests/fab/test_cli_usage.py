@@ -17,7 +17,7 @@ def _commands() -> list[tuple[str, str]]:
     for program, module in PROGRAMS.items():
         (choices,) = (
             action.choices
-            for action in module._parser()._actions
+            for action in module.command_parser()._actions
             if isinstance(action, argparse._SubParsersAction)
         )
         pairs += [(program, command) for command in choices]

@@ -25,11 +25,11 @@ def _commands() -> list[str]:
 def test_the_command_of_a_row_is_understood(command: str) -> None:
     program, *arguments = shlex.split(command)
     if program == "lumitip-fab":
-        options = vars(fab._parser().parse_args(arguments))
+        options = vars(fab.command_parser().parse_args(arguments))
         if options["command"] != "channel-map":  # of a file that a build writes
             load(ROOT / options.get("file", "design/fingertip.toml"))
     elif program == "lumitip":
-        readout._parser().parse_args(arguments)
+        readout.command_parser().parse_args(arguments)
     elif program == "python":
         assert (ROOT / arguments[0]).is_file()
     else:

@@ -1,7 +1,6 @@
 """The tables of the page, and what everyone needs who reads it."""
 
 import csv
-import importlib.util
 import json
 import os
 import re
@@ -21,19 +20,12 @@ from lumitip_fab.site.checks import check_rows
 from lumitip_fab.site.folder import Folder
 from lumitip_fab.site.tables import prints
 from lumitip_fab.site.targets import Targets
-from site_page import Opened
+from site_page import Opened, axe
 
 pytestmark = pytest.mark.slow
 
 MOST_BYTES = 8_000_000
 SIZES = {"phone": {"width": 390, "height": 844}, "desk": {"width": 1440, "height": 900}}
-
-
-def axe() -> str:
-    """The script of axe-core."""
-    spec = importlib.util.find_spec("axe_playwright_python")
-    assert spec is not None and spec.origin is not None, "pip install axe-playwright-python"
-    return (Path(spec.origin).parent / "axe.min.js").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("size", SIZES)

@@ -21,7 +21,7 @@ MODELLING = frozenset({"build", "gripper", "watch"})
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns 0, 1 if a check or a build failed, 2 if the input is rejected."""
-    options = _parser().parse_args(arguments)
+    options = command_parser().parse_args(arguments)
     missing = missing_libraries() if options.command in MODELLING else ()
     if missing:
         print(libraries_message(missing), file=sys.stderr)
@@ -72,7 +72,8 @@ def _print_rejection(options: argparse.Namespace, error: "InputError") -> None:
         print(f"lumitip-fab fix {options.file} writes them.", file=sys.stderr)
 
 
-def _parser() -> argparse.ArgumentParser:
+def command_parser() -> argparse.ArgumentParser:
+    """The parser of the command, with all subcommands."""
     parser = argparse.ArgumentParser(
         prog="lumitip-fab",
         description="From one parameter file to every part of an optical fingertip, and the "

@@ -63,7 +63,8 @@ def write_scene(
     Args:
         target: of the file, ending in `.mcap`; must not exist yet.
         recordings: of each fingertip, by a name of letters, digits and `_`.
-        gap_mm, diameter_mm: that the estimates expect, see `PoseEstimator`.
+        gap_mm: that the estimates expect, see `PoseEstimator`.
+        diameter_mm: of cables that the estimates expect.
         estimates: whether poses are estimated, which takes about a millisecond for each frame.
 
     Raises:

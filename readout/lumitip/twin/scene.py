@@ -155,8 +155,10 @@ class Cable(Line):
         """Share of rays that the cable takes.
 
         Args:
-            x_mm, y_mm: where the rays cross the plane of the axis (mm).
-            across, along: their slopes dx/dz and dy/dz.
+            x_mm: where the rays cross the plane of the axis (mm).
+            y_mm: the same along y (mm).
+            across: their slopes dx/dz.
+            along: their slopes dy/dz.
             pixel_mm: width of the soft border (mm).
         """
         left_mm, beside_deg = self.left_of(x_mm, y_mm)

@@ -79,7 +79,9 @@ class LineTable:
 
         Args:
             layout: the cells.
-            offset_mm, angle_deg, bend_per_mm: of the lines, see `Line`; each of shape `(n,)`.
+            offset_mm: of the lines, see `Line`; shape `(n,)`.
+            angle_deg: of the lines; shape `(n,)`.
+            bend_per_mm: curvature of the lines; shape `(n,)`.
         """
         beside, bend = angle_deg[:, None], bend_per_mm[:, None]
         way = np.cos(np.radians(beside)), np.sin(np.radians(beside))

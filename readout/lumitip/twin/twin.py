@@ -170,7 +170,9 @@ class Twin:
         """Values of many opaque cables of one diameter, shape `(n, cells)`, from the table.
 
         Args:
-            offset_mm, angle_deg, curvature_per_mm: of each axis, as of an edge.
+            offset_mm: of each axis, as of an edge.
+            angle_deg: of each axis.
+            curvature_per_mm: of each axis.
             diameter_mm: of all.
 
         Raises:
