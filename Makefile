@@ -46,8 +46,8 @@ check: $(FAB) ## re-read every file in OUT and prove that they fit
 
 readout: $(READOUT) ## add what reads a fingertip (live view, Bluetooth, serial line) to .venv
 
-watch: $(FAB) ## build whenever DESIGN is saved
-	$(BIN)/lumitip-fab watch $(DESIGN) --out $(OUT)
+watch: $(FAB) ## build and check whenever DESIGN is saved; an open page is loaded again
+	$(BIN)/lumitip-fab watch $(DESIGN) --out $(OUT) --page
 
 test: $(DEV) ## run the tests
 	$(BIN)/python -m pytest -n auto --dist loadfile

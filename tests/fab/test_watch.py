@@ -1,6 +1,7 @@
 """`watch` rebuilds on save and says what changed."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -28,6 +29,7 @@ def test_saving_rebuilds_and_a_fault_is_waited_out(outputs: Path, tmp_path: Path
     log = tmp_path / "log"
     with log.open("w") as told:
         command = [sys.executable, "-m", "lumitip_fab", "watch", str(file), "--out", str(out)]
+        command.append("--page")
         running = subprocess.Popen(
             command, stdout=told, stderr=told, env={**os.environ, "PYTHONUNBUFFERED": "1"}
         )
@@ -39,15 +41,20 @@ def test_saving_rebuilds_and_a_fault_is_waited_out(outputs: Path, tmp_path: Path
             file.write_text(text.replace('name = "Lumitip"  ', 'name = "Other"  '))
             _wait_for(log, "controller.name: Lumitip → Other")
             _wait_for(log, "design.json")
+            _wait_for(log, "checks passed; page", times=2)
         finally:
             running.send_signal(signal.SIGINT)
             assert running.wait(timeout=20) == 0
     assert '"Other"' in (out / "design.json").read_text()
     assert "backing" not in log.read_text()
+    page, stamp = (out / "index.html").read_text(), (out / ".page.js").read_text()
+    assert "Lumitip published" in page
+    (written,) = re.findall(r'"stamp": ?"(\w+)"', page)
+    assert stamp == f'written("{written}");\n'
 
 
-def _wait_for(log: Path, text: str) -> None:
-    end = time.monotonic() + 60
-    while text not in log.read_text():
+def _wait_for(log: Path, text: str, times: int = 1) -> None:
+    end = time.monotonic() + 120
+    while log.read_text().count(text) < times:
         assert time.monotonic() < end, f"{text!r} never came:\n{log.read_text()}"
         time.sleep(0.1)

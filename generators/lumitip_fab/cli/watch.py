@@ -10,6 +10,8 @@ from rich.console import Console
 from watchfiles import watch as changes
 
 from lumitip_fab.cli.build import build
+from lumitip_fab.cli.check import checked
+from lumitip_fab.cli.page import write_page
 from lumitip_fab.cli.screen import OUT
 from lumitip_fab.config.load import load
 from lumitip_fab.config.messages import shown_path
@@ -26,11 +28,11 @@ def run(options: argparse.Namespace) -> int:
     if not options.file.is_file():
         read_toml(options.file, shown_path(options.file))  # raises
     with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C is how one stops it
-        watch(options.file, options.out, OUT)
+        watch(options.file, options.out, OUT, options.page)
     return 0
 
 
-def watch(file: Path, out: Path, console: Console) -> None:
+def watch(file: Path, out: Path, console: Console, with_page: bool) -> None:
     """Build now and after each change, until interrupted. After a rejected file, wait for the next
     change.
 
@@ -38,6 +40,7 @@ def watch(file: Path, out: Path, console: Console) -> None:
         file: the parameter file.
         out: the output folder.
         console: prints the changed values and files.
+        with_page: whether each build is checked, and its page written.
     """
     folder = design_folder(file)
     known: dict[str, Any] = {}
@@ -52,7 +55,9 @@ def watch(file: Path, out: Path, console: Console) -> None:
         rust_timeout=_LONGEST_WAIT_MS,
     ):
         if saved or not watching:
-            known = _rebuilt(file, out, known, console)
+            before, known = known, _rebuilt(file, out, known, console)
+            if with_page and known is not before:
+                _looked_at(out, console)
         if not watching:
             console.print(f"watching {folder}; stop with Ctrl-C")
             watching = True
@@ -76,6 +81,20 @@ def _rebuilt(file: Path, out: Path, known: dict[str, Any], console: Console) -> 
         console.print(f"  wrote {out / path}", soft_wrap=True)
     console.print(f"{len(report.written)} files changed")
     return values
+
+
+def _looked_at(out: Path, console: Console) -> None:
+    """Check the folder, of which most is known from before, and write its page."""
+    try:
+        outcome, _ = checked(out, out / ".checked.json", None, out / "checks.json")
+        path = write_page(out, watched=True)
+    except FabError as error:
+        console.print(str(error), style="red")
+        return
+    failed = sorted({m.check for m in outcome.failed})
+    passed = len(outcome.names) - len(failed)
+    named = f", {len(failed)} failed: {', '.join(failed)}" if failed else ""
+    console.print(f"{passed} checks passed{named}; page {path}", soft_wrap=True)
 
 
 def _values(file: Path) -> dict[str, Any]:

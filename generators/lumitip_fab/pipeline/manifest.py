@@ -13,8 +13,9 @@ from lumitip_fab.pipeline.dependencies import Dependencies
 
 NAME = "manifest.json"
 SCHEMA_VERSION = 3
-PAGE = "index.html"
-REPORTS = ("checks.json", "checks.xml", PAGE)
+PAGE, STAMP = "index.html", ".page.js"
+"""The page, and what tells an open one of a watched folder that it was written anew."""
+REPORTS = ("checks.json", "checks.xml", PAGE, STAMP)
 """Files that `make outputs` writes beside those of the build."""
 
 

@@ -55,12 +55,13 @@ SCRIPTS = (
 _SVG = re.compile(r'<svg\b[^>]*\bviewBox="([^"]+)"[^>]*>(.*)', re.DOTALL)
 
 
-def page(folder: Folder, figures: Sequence[Figure]) -> str:
+def page(folder: Folder, figures: Sequence[Figure], stamp: str = "") -> str:
     """The whole page; the same files give the same bytes.
 
     Args:
         folder: the output folder.
         figures: of the design, beside the published ones.
+        stamp: of a folder that is watched: the open page is loaded again when another is written.
 
     Raises:
         OutputError: if a file cannot be read.
@@ -81,6 +82,9 @@ def page(folder: Folder, figures: Sequence[Figure]) -> str:
             {"file": part.file, "text": part.text, **bed_mesh(folder, part.file)} for part in parts
         ],
     }
+    scripts: tuple[str, ...] = SCRIPTS
+    if stamp:
+        data["stamp"], scripts = stamp, (*SCRIPTS, "watched.js")
     values = {
         "title": f"{escape(design.title.name)} {escape(design.title.revision)}",
         "hash": layout.design_hash[:12],
@@ -101,7 +105,7 @@ def page(folder: Folder, figures: Sequence[Figure]) -> str:
         "figures": figure_table(figures),
         "files": "".join(file_lists(folder)),
         "style": data_file("site/page.css"),
-        "script": "\n".join([colour_ramp(), *(data_file(f"site/{name}") for name in SCRIPTS)]),
+        "script": "\n".join([colour_ramp(), *(data_file(f"site/{name}") for name in scripts)]),
         "data": _json(data),
         "three": three_js(),
         "scene": _scene(folder),
