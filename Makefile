@@ -102,5 +102,5 @@ bills: outputs $(DEV) ## write CycloneDX bills of software, and of the hardware 
 	$(BIN)/python -m release.bills $(OUT) dist
 
 clean: ## remove what was generated, and .venv
-	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache site
+	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache site dist
 	find outputs -mindepth 1 ! -name README.md -delete

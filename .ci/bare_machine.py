@@ -8,7 +8,7 @@ Needs root, debootstrap, unshare and git. The mirror is the one that this machin
 `DEBIAN_MIRROR`; pip's configuration is this machine's.
 
     sudo -E python3 .ci/bare_machine.py [--folder FOLDER] [--release RELEASE]
-        [--if-possible] [COMMAND …]
+        [--if-there] [COMMAND …]
 
 FOLDER is where the file system is made.
 """
@@ -23,6 +23,9 @@ import subprocess
 import sys
 import tempfile
 import time
+import urllib.error
+import urllib.request
+from http import HTTPStatus
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -65,6 +68,21 @@ def mirror() -> str:
         f"apt of this machine has none of {', '.join(RELEASES)}: set DEBIAN_MIRROR to a Debian "
         "mirror"
     )
+
+
+def has_release(uri: str, release: str) -> bool:
+    """Whether a mirror has a release of Debian.
+
+    Raises:
+        OSError: if the mirror does not answer.
+    """
+    try:
+        with urllib.request.urlopen(f"{uri.rstrip('/')}/dists/{release}/Release", timeout=60):
+            return True
+    except urllib.error.HTTPError as error:
+        if error.code == HTTPStatus.NOT_FOUND:
+            return False
+        raise
 
 
 def pip_settings(listed: str) -> dict[str, str]:
@@ -171,13 +189,15 @@ if __name__ == "__main__":
     parser.add_argument("--folder", type=Path)
     parser.add_argument("--release", choices=RELEASES, default=RELEASES[0])
     parser.add_argument(
-        "--if-possible", action="store_true", help="pass where no such system can be made"
+        "--if-there", action="store_true", help="pass where the mirror has no such release"
     )
     parser.add_argument("command", nargs="*")
     asked = parser.parse_args()
     try:
+        if asked.if_there and not has_release(mirror(), asked.release):
+            print(f"bare machine: {mirror()} has no {asked.release}; nothing is tried")
+            sys.exit(0)
         with tempfile.TemporaryDirectory(dir=asked.folder) as made:
             sys.exit(main(Path(made), asked.release, asked.command))
     except (SetupError, OSError) as error:
-        print(f"bare machine: {error}", file=sys.stderr)
-        sys.exit(0 if asked.if_possible else 1)
+        sys.exit(f"bare machine: {error}")

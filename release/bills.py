@@ -78,7 +78,10 @@ def hardware_bill(root: Path, folder: Path) -> str:
     file = folder / BILL
     if not file.is_file():
         raise ReleaseError(f"{file} does not exist. Build the design first: make outputs")
-    text = file.read_bytes().decode("utf-8")
+    try:
+        text = file.read_bytes().decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise ReleaseError(f"{file} is no UTF-8: {error}. Run: make outputs") from error
     return _written(root, ComponentType.DEVICE, list(_bought(text, file)), text)
 
 
@@ -126,8 +129,8 @@ def _written(root: Path, kind: ComponentType, components: list[Component], sourc
 
 def main(outputs: Path, folder: Path) -> int:
     """Write both bills; returns 0, 1 if the design was not built."""
-    version, _ = newest_release(ROOT)
     try:
+        version, _ = newest_release(ROOT)
         bills = {"software": software_bill(ROOT), "hardware": hardware_bill(ROOT, outputs)}
     except ReleaseError as error:
         print(error, file=sys.stderr)

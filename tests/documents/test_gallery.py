@@ -32,7 +32,7 @@ def test_it_has_every_preset(doc_site: Path) -> None:
 @pytest.mark.parametrize("name", ["published", *(n for n in NAMES if n != "published")])
 def test_the_figures_of_a_design_are_those_of_the_gallery(name: str, design_dir: Path) -> None:
     found = drawn(lumitip_fab.derived(design_dir / f"presets/{name}.toml"))
-    assert {figure: FIGURES[name][figure] for figure in found} == found, REMEDY
+    assert near(found, name), REMEDY
 
 
 @pytest.mark.slow_cases
@@ -41,7 +41,12 @@ def test_the_figures_of_a_build_are_those_of_the_gallery(
     name: str, built: Callable[[str], Path]
 ) -> None:
     found = preset_figures.built(built(name))
-    assert {figure: FIGURES[name][figure] for figure in found} == found, REMEDY
+    assert near(found, name), REMEDY
+
+
+def near(found: dict[str, object], name: str) -> bool:
+    """Whether figures are those of the gallery, up to their last digit: processors round unlike."""
+    return all(value == pytest.approx(FIGURES[name][of], rel=0.01) for of, value in found.items())
 
 
 def test_the_search_by_goals_states_the_same_errors() -> None:

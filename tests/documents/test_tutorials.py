@@ -42,6 +42,7 @@ def run(commands: str, folder: Path) -> str:
     """What commands print, in a folder that is set up as a user's."""
     packages = os.pathsep.join(str(ROOT / name) for name in ("generators", "readout"))
     environment = os.environ | {"PYTHONPATH": packages, "HOME": str(folder), "COLUMNS": "400"}
+    environment.pop("XDG_DATA_HOME", None)  # else a calibration would go into the user's own
     done = subprocess.run(
         ["bash", "-euo", "pipefail", "-c", commands],
         cwd=folder,
@@ -61,8 +62,8 @@ def user(tmp_path: Path, outputs: Path) -> Path:
     for name in ("design", "examples"):
         shutil.copytree(ROOT / name, tmp_path / name)
     shutil.copytree(outputs, tmp_path / "outputs")
-    (tmp_path / ".venv").mkdir()
-    (tmp_path / ".venv/bin").symlink_to(Path(sys.executable).parent)
+    # The whole environment: Python looks for its packages beside the folder of its programs.
+    (tmp_path / ".venv").symlink_to(sys.prefix)
     return tmp_path
 
 

@@ -6,7 +6,10 @@ import re
 import subprocess
 import sys
 import tomllib
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 from types import ModuleType
 
 import pytest
@@ -203,10 +206,24 @@ def test_the_bare_machine_has_what_readme_names_and_runs_its_command(bare: Modul
 
 
 def test_the_build_server_tries_the_wheel_on_a_newer_python(bare: ModuleType) -> None:
-    command = re.search(r"bare_machine\.py --if-possible --release (\w+) (\S+)$", RUN, re.MULTILINE)
+    command = re.search(r"bare_machine\.py --if-there --release (\w+) (\S+)$", RUN, re.MULTILINE)
     assert command
     assert command[1] in bare.RELEASES[1:]
     assert os.access(ROOT / command[2], os.X_OK)
+
+
+def test_a_release_that_the_mirror_lacks_is_known(bare: ModuleType, tmp_path: Path) -> None:
+    (tmp_path / "dists/trixie").mkdir(parents=True)
+    (tmp_path / "dists/trixie/Release").touch()
+    handler = partial(SimpleHTTPRequestHandler, directory=str(tmp_path))
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        Thread(target=server.serve_forever, daemon=True).start()
+        uri = f"http://127.0.0.1:{server.server_port}/"
+        assert bare.has_release(uri, "trixie")
+        assert not bare.has_release(uri, "bookworm")
+        server.shutdown()
+    with pytest.raises(OSError):
+        bare.has_release(uri, "trixie")
 
 
 def test_settings_of_pip_reach_the_bare_machine(bare: ModuleType, tmp_path: Path) -> None:

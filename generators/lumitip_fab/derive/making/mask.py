@@ -123,7 +123,7 @@ def _refuse_sheet(
         web >= line - 1e-9,
         "sheet_web",
         p.mask.holes_field,
-        printed=printed,
+        drawn=f" and drawn {loss:g} mm wider" if loss else "",
         web=web,
         line=line,
         most=max(p.grid.pitch_mm - least_web_mm(p) - line + web, 0),
