@@ -54,7 +54,7 @@ def test_holes_are_drawn_larger_by_what_the_print_loses(by_route: Callable[..., 
     assert (set(design.mask.holes_mm), design.mask.sheet.hole_loss_mm) == ({2.4}, 0.2)
     assert design.layout.optics.hole_mm == 2.4
     with pytest.raises(
-        InputError, match=r"is 5\.4, and drawn 0\.2 mm wider, which leaves webs of 0\.40 mm"
+        InputError, match=r"is 5\.4 and drawn 0\.2 mm wider, which leaves webs of 0\.40 mm"
     ):
         derive(lossy.with_values({"mask.hole_mm": 5.4}))
 
