@@ -66,7 +66,7 @@ def test_a_changed_file_is_measured_again_and_no_other(
     [
         ("controller", {"name": "Other"}, []),
         ("optics", {"film_mm": 0.2}, ["layout"]),
-        ("mask", {"holes_mm": [2.4] * 32}, ["mask"]),
+        ("mask", {"holes_mm": [2.4] * 32}, ["layout", "mask"]),
         ("stack", {"film_mm": 0.2}, ["mask"]),
     ],
 )
