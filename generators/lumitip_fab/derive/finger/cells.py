@@ -82,6 +82,7 @@ def _refuse_close_apertures(p: Parameters, faults: Diagnostics) -> None:
     faults.add(
         "apertures_close",
         p.mask.holes_field,
+        holes=p.mask.holes_text,
         web=web,
         pitch=pitch,
         least_web_mm=LEAST_WEB_MM,

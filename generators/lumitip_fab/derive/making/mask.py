@@ -44,6 +44,7 @@ def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Diagnostics
         lowest - window >= LEAST_WEB_MM,
         "aperture_near_window",
         p.mask.holes_field,
+        holes=p.mask.holes_text,
         least_web_mm=LEAST_WEB_MM,
         web_mm=lowest - window,
     )
@@ -123,13 +124,20 @@ def _refuse_sheet(
         web >= line - 1e-9,
         "sheet_web",
         p.mask.holes_field,
+        holes=p.mask.holes_text,
         drawn=f" and drawn {loss:g} mm wider" if loss else "",
         web=web,
         line=line,
         most=max(p.grid.pitch_mm - least_web_mm(p) - line + web, 0),
         mean=" as the mean of two neighbours" if p.mask.cell_holes_mm else "",
     )
-    faults.unless(narrowest >= line - 1e-9, "sheet_hole", p.mask.holes_field, line=line)
+    faults.unless(
+        narrowest >= line - 1e-9,
+        "sheet_hole",
+        p.mask.holes_field,
+        holes=p.mask.holes_text,
+        line=line,
+    )
     faults.unless(
         printed.thickness_mm >= LEAST_SHEET_MM - 1e-9,
         "sheet_thin",
