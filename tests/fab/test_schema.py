@@ -17,8 +17,8 @@ from lumitip_fab.config.schema import UNITS, field_title
 ROOT = Path(__file__).parents[2]
 DESIGN = ROOT / "design"
 FILES = [DESIGN / "fingertip.toml", *sorted(DESIGN.glob("presets/*.toml"))]
-GOALS = ROOT / "examples/goals.toml"  # a file of another kind
-EXAMPLES = [*FILES, *sorted({*(ROOT / "examples").rglob("*.toml")} - {GOALS})]
+GOALS = {*(ROOT / "examples").glob("goals*.toml")}  # files of another kind
+EXAMPLES = [*FILES, *sorted({*(ROOT / "examples").rglob("*.toml")} - GOALS)]
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 FIELDS = [
     f"{s}.{f}"

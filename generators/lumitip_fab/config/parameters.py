@@ -18,6 +18,7 @@ from pydantic import Field
 
 from lumitip_fab.catalogue.record import Name, Strict
 from lumitip_fab.config import sections
+from lumitip_fab.config.mask import Mask
 
 REVISION = r"^[A-Za-z0-9.\-]{1,8}$"
 Gap = Annotated[float, Field(ge=0, le=20)]
@@ -275,7 +276,7 @@ class Parameters(Strict):
     protection: sections.Protection
     supply: Supply
     wiring: Cables
-    mask: sections.Mask
+    mask: Mask
     mould: Mould
     breakout: sections.Breakout
     holder: sections.Holder

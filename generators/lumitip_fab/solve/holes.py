@@ -18,7 +18,7 @@ from lumitip_fab.solve.ranges import as_numbers_of, values_of
 
 FIELD, HOLE = "mask.cell_holes_mm", "mask.hole_mm"
 BY = ("cell", "column", "ring", "row")
-"""What cells of one size have in common. Rings are counted from the border."""
+"""Groups that have one size. Rings are counted from the border."""
 
 
 def groups(columns: Sequence[int], by: str) -> Integers:

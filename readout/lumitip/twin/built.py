@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Model
-from lumitip.twin.rays import REACH_MM, hole_points, relative_light
+from lumitip.twin.rays import REACH_MM, dies, hole_points, relative_light
 from lumitip.twin.scene import PIXEL_MM
 
 Singles = NDArray[np.float32]
@@ -98,11 +98,8 @@ class Rays:
         self._model = model
         # By LED and by cell: the light that its hole scatters, relative to the model's.
         self._scattered = [
-            np.array([relative_light(model, share, *side) for share in layout.hole_share])
-            for side in (
-                (model.emitter_depth_mm, model.led_exponent),
-                (model.detector_depth_mm, model.detector_exponent),
-            )
+            np.array([relative_light(model, share, *die) for share in layout.hole_share])
+            for die in dies(model)
         ]
         points = np.stack(hole_points(model, _ACROSS)) / model.hole_mm
         count, chance = points.shape[1], np.random.default_rng(0)

@@ -43,7 +43,7 @@ class Bundle:
         return self.x_mm + height_mm * self.across, self.y_mm + height_mm * self.along
 
 
-@lru_cache(maxsize=2048)
+@lru_cache(maxsize=512)
 def bundle(
     model: Model,
     dx_mm: float,
@@ -63,13 +63,9 @@ def bundle(
     x, y = hole_points(model, across)
     spread = np.full(x.size, model.alpha / x.size)
     die = (np.zeros(1), np.zeros(1), np.array([1.0 - model.alpha]))
-    sides = (
-        (model.emitter_depth_mm, model.led_exponent),
-        (model.detector_depth_mm, model.detector_exponent),
-    )
     led_hole, cell_hole = (
-        (share * x, share * y, spread * relative_light(model, share, *side))
-        for share, side in zip(holes, sides, strict=True)
+        (share * x, share * y, spread * relative_light(model, share, *die_of))
+        for share, die_of in zip(holes, dies(model), strict=True)
     )
     parts = [
         _rays(model, (dx_mm, dy_mm), holes, (*source, up), (*target, down))
@@ -103,6 +99,14 @@ def _rays(
         x + model.gap_mm * across - shift_mm[0], y + model.gap_mm * along - shift_mm[1]
     )
     return np.stack([x, y, across, along, weight])[:, through]
+
+
+def dies(model: Model) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Equivalent depth (mm) and exponent of the lobe, of the LED and of the detector."""
+    return (
+        (model.emitter_depth_mm, model.led_exponent),
+        (model.detector_depth_mm, model.detector_exponent),
+    )
 
 
 def relative_light(model: Model, share: float, depth_mm: float, exponent: float) -> float:

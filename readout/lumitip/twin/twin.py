@@ -143,8 +143,7 @@ class Twin:
         """Values of many edges, shape `(n, cells)`, from the table.
 
         Args:
-            offset_mm: signed distance of each edge from the origin along its left normal, shape
-                `(n,)`; the right of it is covered.
+            offset_mm: of each edge along its left normal, shape `(n,)`; its right is covered.
             angle_deg: its direction, shape `(n,)`.
             clear: transmittance of each sheet, shape `(n,)` or one for all.
             curvature_per_mm: of each edge, positive to the left, shape `(n,)` or one for all.
@@ -170,9 +169,9 @@ class Twin:
         """Values of many opaque cables of one diameter, shape `(n, cells)`, from the table.
 
         Args:
-            offset_mm: of each axis, as of an edge.
-            angle_deg: of each axis.
-            curvature_per_mm: of each axis.
+            offset_mm: of each axis, as of an edge; the next two likewise.
+            angle_deg: its direction.
+            curvature_per_mm: its curvature.
             diameter_mm: of all.
 
         Raises:
@@ -184,8 +183,7 @@ class Twin:
         return self.calibrated(1.0 - self.cable_table(diameter_mm).of_lines(self.layout, *lines))
 
     def edge_table(self, height: float = 0.5) -> LineTable:
-        """Share of light that an opaque half-plane takes from each cell, by direction and signed
-        distance of its edge."""
+        """Light that an opaque half-plane takes from each cell, by direction and distance."""
         return self._edges(height_in_gap(height))
 
     def cable_table(self, diameter_mm: float = 3.0, height: float = 0.5) -> LineTable:

@@ -158,9 +158,9 @@ def test_pairs_of_a_large_twin_are_sorted_without_holding_up_other_threads(make_
     begun = time.thread_time()
     np.hypot(large.x_mm - large.x_mm[:, None], large.y_mm - large.y_mm[:, None])
     assert spent_s < 15.0 * (time.thread_time() - begun)
-    told = {kind[1:3] for kind in pairs.kinds}
-    assert len(told) == len(pairs.kinds), "each way from a cell to an LED is there once"
-    assert {(-x, -y) for x, y in told} == told
+    ways = {kind[1:3] for kind in pairs.kinds}
+    assert len(ways) == len(pairs.kinds), "each way from a cell to an LED is there once"
+    assert {(-x, -y) for x, y in ways} == ways
     x_mm, y_mm = np.array([pairs.kinds[k][1:3] for k in pairs.kind[pairs.cell == 0]]).T
     beside = np.hypot(large.x_mm - large.x_mm[0], large.y_mm - large.y_mm[0])
     assert np.sort(np.hypot(x_mm, y_mm)) == pytest.approx(np.sort(beside)[: x_mm.size], abs=2e-3)

@@ -87,7 +87,7 @@ def _refuse_close_apertures(p: Parameters, faults: Diagnostics) -> None:
         pitch=pitch,
         least_web_mm=LEAST_WEB_MM,
         most=max(pitch - LEAST_WEB_MM, 0),
-        mean=" as the mean of two neighbours" if p.mask.cell_holes_mm else "",
+        mean=p.mask.mean_text,
     )
 
 

@@ -129,7 +129,7 @@ def _refuse_sheet(
         web=web,
         line=line,
         most=max(p.grid.pitch_mm - least_web_mm(p) - line + web, 0),
-        mean=" as the mean of two neighbours" if p.mask.cell_holes_mm else "",
+        mean=p.mask.mean_text,
     )
     faults.unless(
         narrowest >= line - 1e-9,
