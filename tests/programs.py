@@ -9,6 +9,7 @@ import pytest
 
 _PACKAGES = {
     "kicad-cli": "kicad (version 9)",
+    "pdftoppm": "poppler-utils",
     "arm-none-eabi-g++": "gcc-arm-none-eabi",
     "xtensa-lx106-elf-g++": "gcc-xtensa-lx106",
 }

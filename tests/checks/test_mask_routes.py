@@ -9,12 +9,8 @@ import pytest
 from manifold3d import CrossSection
 
 from damages import Body, box, carve, cut_short, failing, flip_a_triangle, passing, swap
-from finger_notes import noted_mask
-from lumitip_fab.config.load import Input, load
-from lumitip_fab.derive import derive
-from lumitip_fab.design.encoding import design_text
-from lumitip_fab.parts.coupon import coupon_files
-from lumitip_fab.parts.sheet import sheet_files
+from finger_notes import written_masks
+from lumitip_fab.config.load import load
 
 pytestmark = pytest.mark.slow
 
@@ -119,7 +115,7 @@ def test_a_damaged_sheet_fails_exactly(name: str, damaged_masks: Path) -> None:
 
 def test_a_narrow_web_counts_where_the_sheet_is_wrapped(design_dir: Path, tmp_path: Path) -> None:
     config = load(design_dir / "presets/published.toml").with_values({"mask.route": "tpu"})
-    out = written(config, tmp_path / "out")
+    out = written_masks(config, tmp_path / "out")
     assert failing(out, "mask_sheet") == set()
     drilled(0.0, 6.0, 3.0)(out)  # 0.25 mm to its neighbours
     assert failing(out, "mask_sheet") == {"count", "size", "web", "three_mf"}
@@ -195,19 +191,6 @@ def test_every_check_is_in_a_damage(masks: Path) -> None:
         )
 
 
-def written(config: Input, out: Path) -> Path:
-    """The masks of a design with what the checks of their routes read."""
-    design = derive(config)
-    (out / "mask").mkdir(parents=True)
-    (out / "design.json").write_text(design_text(design), encoding="utf-8")
-    for finger in design.fingers:
-        for artefact in (*noted_mask(design, finger), *sheet_files(design, finger)):
-            (out / artefact.path).write_bytes(artefact.data)
-    for artefact in coupon_files(design):
-        (out / artefact.path).write_bytes(artefact.data)
-    return out
-
-
 @pytest.mark.parametrize("preset", ["asymmetric", "dense", "flex", "franka_hand", "wsg50"])
 @pytest.mark.parametrize("layers", [1, 2, 3])
 def test_every_preset_passes_by_every_route(
@@ -215,7 +198,7 @@ def test_every_preset_passes_by_every_route(
 ) -> None:
     values = {"mask.route": "tpu", "mask.layers": layers, "mask.hole_shape": "circle"}
     config = load(design_dir / "presets" / f"{preset}.toml").with_values(values)
-    out = written(config, tmp_path / "out")
+    out = written_masks(config, tmp_path / "out")
     for module in ("mask", "mask_sheet", "mask_cut", "mask_coupon"):
         assert failing(out, module) == set()
     shutil.copy(out / "mask/emitter_cut.dxf", out / "mask/receiver_cut.dxf")

@@ -28,6 +28,7 @@ MODULES = (
     "layout",
     "firmware",
     "mask",
+    "mask_picture",
     "mask_sheet",
     "mask_cut",
     "mask_coupon",
