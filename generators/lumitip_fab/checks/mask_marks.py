@@ -65,7 +65,7 @@ def marks_on(picture: Picture, parts: tuple[Part, ...], wide_mm: float) -> Point
         if off < _ARMS_MM and np.abs(high - low - 2 * _ARMS_MM).max() < _ODD_MM:
             part = picture.part(low - _PAST_MM, high + _PAST_MM)
             if _MARK_MM2[0] < part.ink.sum() * part.pixel_mm.prod() < _MARK_MM2[1]:
-                found.append(_centre(part))
+                found.append(part.ink_middle_mm)
     return np.array(found).reshape(-1, 2)
 
 
@@ -77,16 +77,6 @@ def rulers_on(picture: Picture, parts: tuple[Part, ...]) -> Iterator[Ruler]:
             along = int(size.argmax())
             ticks = _ticks(picture.part(low - _PAST_MM, high + _PAST_MM), along)
             yield Ruler(along, ticks, float((low + high)[1 - along]) / 2)
-
-
-def _centre(part: Picture) -> Points:
-    ink = part.ink
-    row, column = (
-        np.average(np.arange(n) + 0.5, weights=ink.sum(axis=1 - axis))
-        for axis, n in enumerate(ink.shape)
-    )
-    centre: Points = part.points(np.array([[column, row]]))[0]
-    return centre
 
 
 def _ticks(part: Picture, along: int) -> Points:

@@ -9,12 +9,15 @@ import numpy as np
 from lumitip_fab.checks.mask_black import MEASURES, WRONG_MM2, Seen
 from lumitip_fab.checks.mask_holes import place
 from lumitip_fab.checks.mask_marks import Part, marks_on, parts_on, rulers_on
+from lumitip_fab.checks.readers.drawn import dxf_picture, svg_picture
 from lumitip_fab.checks.readers.mask_page import PageError
 from lumitip_fab.checks.readers.pixels import Picture, page_pictures
 from lumitip_fab.checks.result import Measurement, Subject, measured, unreadable
 from lumitip_fab.design import Design, Finger
 
-READS = ("mask/*_mask_*.pdf", "mask/coupon_*.pdf")
+READS = ("mask/*_mask_*.pdf", "mask/coupon_*.pdf", "mask/*_mask.svg", "mask/*_mask.dxf")
+BLACK = ("BLACK", "WINDOW", "APERTURES")
+"""Layers of the DXF that are one area with openings."""
 
 PAPERS_MM = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
 PAPER_MM = 0.1
@@ -33,6 +36,24 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         for finger in design.fingers:
             yield from _paper(outputs, f"{finger.name}_mask", paper, finger, design)
         yield from _paper(outputs, "coupon", paper, None, design)
+    for finger in design.fingers:
+        yield from _drawing(outputs, "svg", finger, design)
+        yield from _drawing(outputs, "dxf", finger, design)
+
+
+def _drawing(outputs: Path, kind: str, finger: Finger, design: Design) -> Iterator[Measurement]:
+    """A drawing, which is 1:1."""
+    file = Subject("mask_picture", f"mask/{finger.name}_mask.{kind}")
+    path = outputs / file.subject
+    try:
+        picture = svg_picture(path) if kind == "svg" else dxf_picture(path, BLACK)
+        parts = parts_on(picture)
+        seen = _placed(file, picture, parts, (1.0, 1.0), finger, design)
+    except PageError as error:
+        yield unreadable("mask_picture.readable", file.subject, str(error))
+        return
+    yield file.figure("readable", len(parts), 1, math.inf, "parts")
+    yield from measured(MEASURES, seen)
 
 
 def _paper(

@@ -51,6 +51,20 @@ class Picture:
         """Share of each pixel that is black."""
         return np.float32(1) - self.grey / np.float32(255)
 
+    @property
+    def ink_middle_mm(self) -> Points:
+        """Its centroid on the page, shape `(2,)`.
+
+        Raises:
+            ZeroDivisionError: if there is none.
+        """
+        row, column = (
+            np.average(np.arange(n) + 0.5, weights=self.ink.sum(axis=1 - axis))
+            for axis, n in enumerate(self.grey.shape)
+        )
+        middle: Points = self.points(np.array([[column, row]]))[0]
+        return middle
+
     def pixels(self, points: Points) -> Points:
         """Column and row of points on the page (mm), shape `(n, 2)`; whole numbers are corners of
         pixels."""
@@ -82,21 +96,32 @@ def page_pictures(path: Path) -> tuple[Picture, Picture]:
     try:
         with pikepdf.open(path) as pdf:
             unit_mm = MM * float(pdf.pages[0].obj.get("/UserUnit", 1))
-        with closing(pypdfium2.PdfDocument(path)) as document:
-            if len(document) != 1:
-                raise PageError(f"{len(document)} pages, one is needed")
-            page = document[0]
-            size_mm = np.array(page.get_size()) * unit_mm
-            if not 0 < size_mm.min() <= size_mm.max() <= LARGEST_MM:
-                raise PageError(f"its page is {size_mm[0]:.4g} x {size_mm[1]:.4g} mm")
-            words = tuple(_words(page, unit_mm))
-            printed, shown = (_drawn(page, unit_mm, mode) for mode in ("print", None))
+        printed, shown = pictures_of(path.read_bytes(), unit_mm, "print", None)
     except FileNotFoundError as error:
         raise PageError("no such file") from error
     except (OSError, pikepdf.PdfError, *MALFORMED) as error:
         raise PageError(f"cannot be drawn: {error!r:.200}") from error
-    pixel_mm, corner = size_mm / printed.shape[::-1], np.zeros(2)
-    return Picture(printed, pixel_mm, corner, words), Picture(shown, pixel_mm, corner, words)
+    return printed, shown
+
+
+def pictures_of(pdf: bytes, unit_mm: float, *modes: str | None) -> Iterator[Picture]:
+    """Draw the only page of a PDF, for each of pdfium's modes.
+
+    Raises:
+        PageError: if it has not one page, or one that is too large.
+        RuntimeError: if it is damaged.
+    """
+    with closing(pypdfium2.PdfDocument(pdf)) as document:
+        if len(document) != 1:
+            raise PageError(f"{len(document)} pages, one is needed")
+        page = document[0]
+        size_mm = np.array(page.get_size()) * unit_mm
+        if not 0 < size_mm.min() <= size_mm.max() <= LARGEST_MM:
+            raise PageError(f"its page is {size_mm[0]:.4g} x {size_mm[1]:.4g} mm")
+        words = tuple(_words(page, unit_mm))
+        for mode in modes:
+            grey = _drawn(page, unit_mm, mode)
+            yield Picture(grey, size_mm / grey.shape[::-1], np.zeros(2), words)
 
 
 def _drawn(page: pypdfium2.PdfPage, unit_mm: float, mode: str | None) -> Grey:
