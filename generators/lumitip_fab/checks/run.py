@@ -58,6 +58,7 @@ MODULES = (
     "bom",
     "packs",
     "heat",
+    "manual_pages",
 )
 _LONG = frozenset({"orders", "board"})
 """Modules that take longer than another process takes to start."""
