@@ -89,6 +89,7 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
     "SVG missing": (lambda out: (out / SVG).unlink(), {"readable"}),
     "DXF mirrored": (dxf(dxf_mirrored), {"mirrored"}),
     "DXF in inches": (dxf(lambda d: setattr(d, "units", units.IN)), {"readable"}),
+    "DXF in light years": (dxf(lambda d: setattr(d, "units", 19)), {"readable"}),
     "DXF without a unit": (dxf(lambda d: setattr(d, "units", 0)), {"readable"}),
     "DXF with a layer off": (
         dxf(lambda d: d.layers.get("APERTURES").off()),

@@ -29,6 +29,7 @@ HAIR_MM = 0.1
 _FILLED = ""
 """In place of the layer of what a DXF fills by itself."""
 _FLAT_MM = 0.0005  # from a curve to its chords
+_LARGEST_UNIT_MM = 1000.0  # curves in larger ones would have countless chords
 _ROUND_MM = 5.0  # of bare paper round a DXF
 _TAGS = frozenset(("svg", "title", "path", "g", "circle", "rect", "text"))
 _PLACES = ("id", "d", "cx", "cy", "r", "x", "y", "width", "height", "viewBox", "transform")
@@ -74,6 +75,8 @@ def dxf_picture(path: Path, black: Iterable[str]) -> Picture:
     try:
         document = ezdxf.readfile(path)
         unit_mm = units.conversion_factor(document.units, units.MM)
+        if unit_mm > _LARGEST_UNIT_MM:
+            raise PageError(f"its unit is {unit_mm:g} mm")
         recorder = Recorder()
         config = Configuration(text_policy=TextPolicy.IGNORE)
         Frontend(RenderContext(document), recorder, config).draw_layout(document.modelspace())
