@@ -1,13 +1,12 @@
 """Damages of a backing's files, each with the checks that must fail."""
 
 import shutil
-import zipfile
 from pathlib import Path
 
 import numpy as np
 import trimesh
 
-from damages import cut_short, flip_a_triangle, remove_packages, swap
+from damages import cut_short, flip_a_triangle, swap
 
 STL = "backing/receiver_backing.stl"
 EMITTER_STL = "backing/emitter_backing.stl"
@@ -53,24 +52,6 @@ def gone(folder: Path) -> None:
     (folder / STL).unlink()
 
 
-def packages_gone(folder: Path) -> None:
-    remove_packages(folder / STL)
-
-
-def package_in_inches(folder: Path) -> None:
-    path = (folder / STL).with_suffix(".3mf")
-    with zipfile.ZipFile(path) as package:
-        entries = {name: package.read(name) for name in package.namelist()}
-    with zipfile.ZipFile(path, "w") as package:
-        for name, data in entries.items():
-            package.writestr(name, data.replace(b'"millimeter"', b'"inch"'))
-
-
-def step_of_nothing(folder: Path) -> None:
-    path = (folder / STL).with_suffix(".step")
-    path.write_text(path.read_text().replace("MANIFOLD_SOLID_BREP", "SHELL_BASED_SURFACE_MODEL"))
-
-
 EVERY_LENGTH = {
     "bed_contact",
     "bolt",
@@ -95,8 +76,6 @@ EVERY_LENGTH = {
     "screw_seat",
     "size",
     "slant",
-    "step",
-    "three_mf",
     "tip_edge",
 }
 FILES = {
@@ -104,12 +83,9 @@ FILES = {
     triangle_lost: {"watertight"},
     windows_missing: {"reliefs", "letter"},
     fingers_swapped: {"reliefs", "pocket_depth", "letter"},
-    longer: {"size", "outline", "keys", "pins", "pocket_gap", "three_mf", "step"},
+    longer: {"size", "outline", "keys", "pins", "pocket_gap"},
     in_inches: EVERY_LENGTH,
     truncated: {"readable"},
     not_a_mesh: {"readable"},
     gone: {"readable"},
-    packages_gone: {"three_mf", "step"},
-    package_in_inches: {"three_mf"},
-    step_of_nothing: {"step"},
 }

@@ -34,7 +34,7 @@ ALLOWED = {
     "scenes": "design pipeline parts",
     "docs": "design pipeline",
     "checks.readers": "design",
-    "checks": "checks.readers design pipeline",
+    "checks": "checks.readers config derive design pipeline",
     "explore": "boards catalogue checks config derive design pipeline",
     "solve": "catalogue config derive design explore pipeline",
     "tolerance": "catalogue config derive design pipeline",

@@ -137,7 +137,7 @@ def letter_shallow(part: Manifold, _: Design) -> Manifold:
 SENSOR_FRAME = {
     pin_shifted: {"pins"},
     pin_thinner: {"pin_clearance"},
-    pin_taller: {"pin_height", "step"},
+    pin_taller: {"pin_height"},
     pin_missing: {"pins", "pin_clearance", "pin_height"},
     pocket_enlarged: {"pocket_gap"},
     pocket_shallower: {"pocket_depth"},
@@ -158,7 +158,7 @@ MOUNT_FRAME = {
     gripper_pin_hole_shallow: {"gripper_pin_depth"},
     lump_in_counterbore: {"screw_seat"},
     nose_widened: {"nose"},
-    foot_hollow: {"bed_contact", "span", "step"},
+    foot_hollow: {"bed_contact", "span"},
     letter_filled: {"letter"},
     letter_shallow: {"letter"},
 }

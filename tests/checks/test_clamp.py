@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from manifold3d import Manifold
 
-from damages import Body, box, carve, excerpt, failing, flip_a_triangle, remove_packages
+from damages import Body, box, carve, excerpt, failing, flip_a_triangle
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.design.frames import clamp_bed_to_sensor, mould_bed_to_sensor
 
@@ -98,7 +98,6 @@ def island_added(part: Body) -> Body:
     return part + box((300, 0, 10), (303, 3, 13.35))
 
 
-OTHER_FILES = {"three_mf", "step"}  # no longer the part that the STL holds
 CARVED = {
     foot_shorter: {"seats"},
     foot_longer: {"seats", "clear", "marks"},
@@ -109,13 +108,13 @@ CARVED = {
     over_the_wires: {"wires"},
     mark_filled: {"marks"},
     mark_higher: {"marks"},
-    leg_out: OTHER_FILES | {"flush", "marks"},
+    leg_out: {"flush", "marks"},
     screw_hole_off: {"screws"},
     screw_hole_wide: {"screw_clearance"},
-    lug_thicker: OTHER_FILES | {"screw_length"},
+    lug_thicker: {"screw_length"},
     arm_thinner: {"press"},
     leg_slotted: {"min_wall", "overhang"},
-    island_added: OTHER_FILES | {"bodies", "fits_bed"},
+    island_added: {"bodies", "fits_bed"},
 }
 
 
@@ -177,10 +176,6 @@ def mould_missing(folder: Path) -> None:
     (folder / MOULD).unlink()
 
 
-def packages_gone(folder: Path) -> None:
-    remove_packages(folder / CLAMP)
-
-
 def window_under_a_foot(folder: Path) -> None:
     """A hole through the receiver's plate, in the frame in which it is printed."""
     carve(folder / BACKING, lambda part: part - box((21.5, -5, 7.5), (22.5, 6, 9)))
@@ -190,7 +185,6 @@ FILES = {
     triangle_flipped: {"watertight", "clear"},
     clamp_missing: {"readable"},
     mould_missing: {"readable"},
-    packages_gone: OTHER_FILES,
     window_under_a_foot: {"seats"},
 }
 

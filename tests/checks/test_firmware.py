@@ -13,7 +13,7 @@ from lumitip_fab.design.encoding import design_text, read_design
 from lumitip_fab.firmware.files import firmware_files
 
 PRESETS = sorted(f.stem for f in (Path(__file__).parents[2] / "design/presets").glob("*.toml"))
-ALL = {"channels", "pins", "converter", "hash", "name", "complete"}
+ALL = {"channels", "pins", "converter", "hash", "name", "protocol", "form", "sources"}
 
 
 @pytest.fixture(scope="session")
@@ -61,7 +61,21 @@ EDITS = [
     (PROTOCOL, "DESIGN_CODE = 0x", "DESIGN_CODE = 0x1", {"hash"}),
     (PROTOCOL, "DESIGN_HASH[8] = {", "DESIGN_HASH[8] = {0x00, ", {"hash"}),
     (PROTOCOL, '"Lumitip"', '"lumitip"', {"name"}),
-    ("device.h", '#include "cobs.h"', '#include "cops.h"', {"complete"}),
+    (LAYOUT, "MUXES = 4;", "MUXES = 4", {"converter", "form"}),
+    (LAYOUT, "    0, 0, 0,", "    0 0, 0,", {"form"}),
+    (LAYOUT, "}  // namespace", "  // namespace", {"form"}),
+    (LAYOUT, "#pragma once", "#pragma twice", {"form"}),
+    (LAYOUT, "namespace lumitip {", "namespace lumitip", {"form"}),
+    (LAYOUT, "constexpr uint8_t ADC_BITS", "constexpr ADC_BITS", {"converter", "form"}),
+    (PROTOCOL, "MAGIC = 0x4c", "MAGIC = 0x4d", {"protocol"}),
+    (PROTOCOL, "VERSION = 2", "VERSION = 3", {"protocol"}),
+    (PROTOCOL, "7d1c0002", "7d1c0004", {"protocol"}),
+    (PROTOCOL, "WIRING_SUM = 0x", "WIRING_SUM = 0x1", {"protocol"}),
+    (PROTOCOL, '"ecbc"', '"ecbd"', {"protocol"}),
+    (PROTOCOL, '"ecbc";', '"ecbc;', {"protocol", "form"}),
+    ("device.h", '#include "cobs.h"', '#include "cops.h"', {"sources"}),
+    ("firmware.ino", "device.poll();", "device.poll()", {"sources"}),
+    ("README.md", "V", "mV", {"sources"}),
 ]
 
 
@@ -83,10 +97,10 @@ def test_a_damage_fails_exactly_these_checks(
 @pytest.mark.parametrize(
     ("file", "fails"),
     [
-        (LAYOUT, {"channels", "pins", "converter", "hash", "complete"}),
-        (PROTOCOL, {"hash", "name", "complete"}),
-        ("cobs.h", {"complete"}),
-        ("firmware.ino", {"complete"}),
+        (LAYOUT, {"channels", "pins", "converter", "hash", "form"}),
+        (PROTOCOL, {"hash", "name", "protocol", "form"}),
+        ("cobs.h", {"sources"}),
+        ("firmware.ino", {"sources"}),
     ],
 )
 def test_a_missing_file_fails_exactly_these_checks(
@@ -100,7 +114,7 @@ def test_a_sketch_of_another_design_fails(damaged_sketch: Path, design_dir: Path
     d = derive(load(design_dir / "presets" / "asymmetric.toml"))
     for artefact in firmware_files(d):
         (damaged_sketch / artefact.path).write_bytes(artefact.data)
-    assert failing(damaged_sketch) == {"channels", "pins", "converter", "hash", "name"}
+    assert failing(damaged_sketch) == ALL - {"form", "sources"}
 
 
 def test_every_firmware_check_is_failed_by_some_damage(sketches: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 import trimesh
 from manifold3d import Manifold
 
-from damages import box, carve, cut_short, failing, flip_a_triangle, remove_packages
+from damages import box, carve, cut_short, failing, flip_a_triangle
 from lumitip_fab.checks import fit_plate
 from lumitip_fab.checks.run import run_checks
 from lumitip_fab.config.load import load
@@ -201,7 +201,7 @@ DAMAGES = {
     value_of_another_step: {"label"},
     steps_swapped: PLACED - {"bolt", "gripper_pins"},
     hollow: {"volume"},
-    longer: {"size", "three_mf", "step", "pocket_gap", "pins", "bolt", "gripper_pins", "nose"},
+    longer: {"size", "pocket_gap", "pins", "bolt", "gripper_pins", "nose"},
     crumb: {"bodies"},
     joined: {"bodies"},
 }
@@ -222,12 +222,11 @@ FILES: dict[Callable[[Path], None], set[str]] = {
     lambda folder: flip_a_triangle(folder / STL): {"watertight"},
     lambda folder: cut_short(folder / STL): {"readable"},
     lambda folder: (folder / STL).unlink(): {"readable"},
-    lambda folder: remove_packages(folder / STL): {"three_mf", "step"},
-    in_inches: PLACED | {"size", "volume", "bed_contact", "three_mf", "step"},
+    in_inches: PLACED | {"size", "volume", "bed_contact"},
 }
 
 
-@pytest.mark.parametrize("damage", FILES, ids=["flipped", "cut", "gone", "no packages", "inches"])
+@pytest.mark.parametrize("damage", FILES, ids=["flipped", "cut", "gone", "inches"])
 def test_a_damaged_file(damage: Callable[[Path], None], damaged: Path) -> None:
     damage(damaged)
     assert failing(damaged, "fit_plate") == FILES[damage]

@@ -110,9 +110,9 @@ ON_PLATE: dict[Damage, set[str]] = {
 ON_INTERFACE: dict[Damage, set[str]] = {
     rim_thick: {"glue"},
     rim_too_thick: {"glue", "joint"},
-    rim_low: {"rim_height", "size", "step", "three_mf"},
+    rim_low: {"rim_height", "size"},
     pad_hollow: {"pad"},
-    pad_short: {"size", "step", "three_mf"},
+    pad_short: {"size"},
 }
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from damages import Body, box, carve, excerpt, failing, flip_a_triangle, remove_packages
+from damages import Body, box, carve, excerpt, failing, flip_a_triangle
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.design.frames import gauge_bed_to_sensor
 
@@ -107,15 +107,13 @@ def stop_away(part: Body) -> Body:
     return part - box((-14, 22, -3.1), (14, 22.4, -0.01))
 
 
-OTHER_FILES = {"three_mf", "step"}
 CARVED: dict[Damage, set[str]] = {
-    moved_across: OTHER_FILES | {"line", "rails", "window"},
-    moved_along: OTHER_FILES | {"clear", "line", "rails", "window"},
-    moved_up: OTHER_FILES | {"bed_contact", "clear", "frame", "heights"},
-    scaled: OTHER_FILES
-    | {"bed_contact", "clear", "frame", "heights", "line", "rails", "width", "window"},
+    moved_across: {"line", "rails", "window"},
+    moved_along: {"clear", "line", "rails", "window"},
+    moved_up: {"bed_contact", "clear", "frame", "heights"},
+    scaled: {"bed_contact", "clear", "frame", "heights", "line", "rails", "width", "window"},
     mirrored: {"angle", "window"},
-    upside_down: OTHER_FILES | {"borders", "heights", "line", "overhang", "rails", "window"},
+    upside_down: {"borders", "heights", "line", "overhang", "rails", "window"},
     blade_thicker: {"heights"},
     blade_recessed: {"heights", "min_wall", "overhang"},
     blade_with_a_hole: {"angle", "borders", "straight", "window"},
@@ -125,7 +123,7 @@ CARVED: dict[Damage, set[str]] = {
     lid_over_a_window: {"overhang", "window"},
     frame_thinner: {"frame", "min_wall"},
     frame_without_a_side: {"frame", "min_wall"},
-    crumb_on_the_frame: OTHER_FILES | {"clear", "frame"},
+    crumb_on_the_frame: {"clear", "frame"},
     rail_inward: {"rails"},
     rail_into_the_finger: {"clear", "frame", "rails"},
     stop_away: {"rails"},
@@ -164,10 +162,6 @@ def scene_missing(folder: Path) -> None:
 
 def backing_missing(folder: Path) -> None:
     (folder / "backing/emitter_backing.stl").unlink()
-
-
-def packages_gone(folder: Path) -> None:
-    remove_packages(folder / CARD)
 
 
 def triangle_flipped(folder: Path) -> None:
@@ -218,7 +212,6 @@ FILES: dict[str, tuple[Callable[[Path], None], set[str]]] = {
     "json_missing": (json_missing, {"readable"}),
     "scene_missing": (scene_missing, {"readable"}),
     "backing_missing": (backing_missing, {"readable"}),
-    "packages_gone": (packages_gone, OTHER_FILES),
     "triangle_flipped": (triangle_flipped, {"watertight", "clear"}),
 }
 

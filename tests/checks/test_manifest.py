@@ -38,10 +38,46 @@ def test_a_matrix_that_puts_a_part_elsewhere(
     damaged: Path, path: str, row: int, column: int, value: float
 ) -> None:
     file = damaged / "manifest.json"
-    told = json.loads(file.read_text())
-    told["files"][path]["to_sensor"][row][column] = value
-    file.write_text(json.dumps(told))
+    record = json.loads(file.read_text())
+    record["files"][path]["to_sensor"][row][column] = value
+    file.write_text(json.dumps(record))
     assert failing(damaged) == {"manifest.frames"}
+
+
+@pytest.mark.parametrize(
+    ("name", "seen"),
+    [
+        ("backing/old_backing.stl", True),
+        ("order_copy.csv", True),
+        ("boards/emitter/order/jlcpcb_emitter_old.zip", True),
+        ("firmware/crc_copy.h", True),
+        ("boards/emitter/_autosave-emitter.kicad_pcb", False),
+        ("boards/emitter/~emitter.kicad_pcb.lck", False),
+        ("boards/emitter/emitter.kicad_prl", False),
+        ("boards/emitter/emitter-backups/emitter-2026.zip", False),
+        ("backing/backing.gcode", False),
+        ("backing/photo.png", False),
+        ("report.json", False),
+        ("flex/backing/emitter_backing.stl", False),
+    ],
+)
+def test_a_file_of_no_build_that_could_be_sent(damaged: Path, name: str, seen: bool) -> None:
+    (damaged / name).parent.mkdir(parents=True, exist_ok=True)
+    (damaged / name).write_text("of another design")
+    assert failing(damaged) == ({"manifest.strays"} if seen else set())
+
+
+@pytest.mark.parametrize(
+    ("row", "column", "value"), [(3, 3, 0.9), (3, 0, 1.0), (0, 1, 0.2), (0, 0, "1")]
+)
+def test_a_matrix_that_is_no_motion(
+    damaged: Path, row: int, column: int, value: float | str
+) -> None:
+    file = damaged / "manifest.json"
+    record = json.loads(file.read_text())
+    record["files"]["mask/emitter_sheet.3mf"]["to_sensor"][row][column] = value
+    file.write_text(json.dumps(record))
+    assert failing(damaged) == {"manifest.matrices"}
 
 
 def test_no_manifest(damaged: Path) -> None:
@@ -49,7 +85,8 @@ def test_no_manifest(damaged: Path) -> None:
     assert failing(damaged) == {"manifest.files", "manifest.frames"}
 
 
-def test_both_checks_pass_undamaged(outputs: Path) -> None:
+def test_every_check_passes_undamaged(outputs: Path) -> None:
     outcome = run_checks(outputs, ["manifest"])
-    assert outcome.names == {"manifest.files", "manifest.frames"}
+    names = ("files", "strays", "matrices", "frames")
+    assert outcome.names == {f"manifest.{name}" for name in names}
     assert outcome.failed == ()

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from manifold3d import Manifold
 
-from damages import box, carve, edit, failing, flip_a_triangle, remove_packages, swap
+from damages import box, carve, edit, failing, flip_a_triangle, swap
 from lumitip_fab.checks import mould
 
 pytestmark = pytest.mark.slow
@@ -105,7 +105,6 @@ def lifted(part: Manifold) -> Manifold:
     return part.translate((0, 0, 0.004))
 
 
-OTHER_FILES = {"three_mf", "step"}  # no longer the part that the STL holds
 SOLID = {
     pad_lowered: {"stops"},
     pad_cut: {"stops"},
@@ -115,13 +114,13 @@ SOLID = {
     wall_upright: {"draft"},
     wall_too_near: {"gap"},
     wall_too_far: {"gap", "draft"},  # the ends of the cut are upright
-    wall_overhanging: OTHER_FILES | {"undercut"},
+    wall_overhanging: {"undercut"},
     wall_thin: {"min_wall"},
-    island_added: OTHER_FILES | {"bodies"},
-    sprue_added: OTHER_FILES | {"fits_bed"},
-    post_added: OTHER_FILES | {"seat"},
-    squashed: OTHER_FILES | {"thickness", "tip_thickness", "stops", "volume", "grip"},
-    tilted: OTHER_FILES | {"stops", "draft", "undercut", "letter"},
+    island_added: {"bodies"},
+    sprue_added: {"fits_bed"},
+    post_added: {"seat"},
+    squashed: {"thickness", "tip_thickness", "stops", "volume", "grip"},
+    tilted: {"stops", "draft", "undercut", "letter"},
     grip_deeper: {"grip"},
     grip_shallower: {"grip"},
     letter_filled: {"letter"},
@@ -146,17 +145,6 @@ def fingers_swapped(folder: Path) -> None:
 def mould_truncated(folder: Path) -> None:
     data = (folder / STL).read_bytes()
     (folder / STL).write_bytes(data[: len(data) // 2])
-
-
-def packages_gone(folder: Path) -> None:
-    remove_packages(folder / STL)
-
-
-def packages_swapped(folder: Path) -> None:
-    """The backing's files under the mould's names."""
-    for kind in ("3mf", "step"):
-        data = (folder / f"backing/receiver_backing.{kind}").read_bytes()
-        (folder / STL).with_suffix(f".{kind}").write_bytes(data)
 
 
 def mould_missing(folder: Path) -> None:
@@ -209,8 +197,6 @@ FILES = {
     mould_truncated: EVERY,
     mould_missing: EVERY,
     fingers_swapped: {"letter"},
-    packages_gone: {"three_mf", "step"},
-    packages_swapped: {"three_mf", "step"},
     volume_edited: {"volume", "masses"},
     mass_edited: {"masses"},
     layers_edited: {"note"},

@@ -37,12 +37,7 @@ def test_a_measurement_that_could_not_be_taken_fails() -> None:
 
 UNREAD = (
     ".built",  # spares a build
-    "resolved.toml",  # the input again
     "boards/*/*.cir",  # run by ngspice in the tests
-    "boards/*/*.kicad_pro",  # rules and libraries, which KiCad itself reads in the tests
-    "boards/*/*-lib-table",
-    "boards/*/lumitip.kicad_sym",
-    "boards/*/lumitip.pretty/*.kicad_mod",
     "boards/*/*_front.svg",  # pictures, which the manual shows as PNG
     "boards/*/*_back.svg",
 )

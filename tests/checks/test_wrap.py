@@ -27,7 +27,7 @@ pytestmark = pytest.mark.slow
 Damage = Callable[[Body], Body]
 PROP, MOULD = "mould/prop.stl", "mould/receiver_mould.stl"
 BACKING = "backing/receiver_backing.stl"
-EVERY = {"prop", "three_mf", "step", "slots", "level", "lip", "held"}
+EVERY = {"prop", "slots", "level", "lip", "held"}
 
 
 @pytest.fixture
@@ -94,8 +94,8 @@ def prop_of(design_dir: Path, folder: Path, lines: str, to: Path) -> Design:
 @pytest.mark.parametrize(
     ("lines", "fails"),
     [
-        ("[mould]\ntip_lip_mm = 0.1\n", {"prop", "level", "lip", "step", "three_mf"}),
-        ("[mould]\nwall_mm = 3.2\n", {"prop", "step", "three_mf"}),
+        ("[mould]\ntip_lip_mm = 0.1\n", {"prop", "level", "lip"}),
+        ("[mould]\nwall_mm = 3.2\n", {"prop"}),
         ("[breakout]\nboard_mm = [45.72, 38.1]\n", set()),
     ],
 )
@@ -107,21 +107,6 @@ def test_a_prop_of_another_design_is_seen(
     assert (other == own) == (not fails)
     assert failing(copied, "wrap") >= fails
     assert bool(failing(copied, "wrap")) == bool(fails)
-
-
-@pytest.mark.parametrize("end", ["stl", "3mf", "step"])
-def test_one_file_of_another_prop_is_seen(
-    end: str, copied: Path, design_dir: Path, tmp_path: Path
-) -> None:
-    whole = {f.name: f.read_bytes() for f in (copied / "mould").glob("prop.*")}
-    prop_of(design_dir, tmp_path, "[mould]\nwall_mm = 3.2\n", copied)
-    for name, data in whole.items():
-        if not name.endswith(end):
-            (copied / "mould" / name).write_bytes(data)
-    check = {"stl": "prop", "3mf": "three_mf", "step": "step"}[end]
-    failed = failing(copied, "wrap")
-    assert check in failed
-    assert not failed & ({"three_mf", "step"} - {check})
 
 
 def test_a_prop_that_an_earlier_design_left_is_seen(

@@ -95,8 +95,6 @@ def measure_nose(part: printed.Printed) -> Iterator[Measurement]:
 
 READS = (
     "backing/*.stl",
-    "backing/*.3mf",
-    "backing/*.step",
     "interface/*.stl",
     "interface/*.3mf",
     "interface/*.step",
@@ -122,8 +120,6 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
                 continue
             yield part.figure("readable", float(len(part.standing.faces)), 4, np.inf, "triangles")
             yield from _measured(part)
-            bounds = part.standing.bounds, part.sensor.bounds
-            yield from printed.measure_boxes("backing", outputs, part.subject, *bounds)
         whole = [part for part in made if isinstance(part, printed.Printed)]
         if len(whole) == 2:
             yield from measured((plate.measure_joint,), replace(whole[1], plate=whole[0]))

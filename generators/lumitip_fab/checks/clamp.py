@@ -18,7 +18,6 @@ from lumitip_fab.checks.printed import (
     circles,
     holes_at,
     measure_bed,
-    measure_boxes,
     measure_closed,
     room,
     round_head,
@@ -38,7 +37,7 @@ from lumitip_fab.design.frames import (
 from lumitip_fab.design.making import TIP_LAND_FRACTION
 from lumitip_fab.errors import OutputError
 
-READS = ("mould/*.stl", "mould/*.3mf", "mould/*.step", "backing/*.stl", "interface/*.stl")
+READS = ("mould/*.stl", "backing/*.stl", "interface/*.stl")
 SEAT_MM = 0.1
 LINE_MM = 0.1
 FLUSH_MM = 0.1
@@ -82,7 +81,6 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         of = Subject("clamp", subject)
         yield from _prints(of, standing, design)
         sensor = solids.moved(standing, to_sensor)
-        yield from measure_boxes("clamp", outputs, subject, standing.bounds, sensor.bounds)
         for finger in design.fingers:
             try:
                 held = _held(outputs, design, finger, clamp, sensor)

@@ -1,16 +1,27 @@
 """The sketch folder against the layout: channel map, pins, identity and name in the written
-headers, and no file missing. That `layout.json` is the same layout is checked in `layout`."""
+headers, and all other files as they are shipped. That `layout.json` is the same layout is checked
+in `layout`."""
 
 import math
 import re
+from binascii import crc_hqx
 from collections.abc import Iterator
 from pathlib import Path
 
 from lumitip.layout import Layout
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip.protocol import bluetooth, packet
+from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design
+from lumitip_fab.paths import firmware_sources
+from lumitip_fab.pipeline.manifest import sha256_of
 
 READS = ("firmware/*",)
+_COMMENT = re.compile(r"//.*")
+_VALUE = r'(?:\w+|"[^"]*"|\{\s*\w+(?:,\s*\w+)*,?\s*\})'
+_HEADER = re.compile(
+    r"(?:\s*(?:#(?:pragma once|include <stdint\.h>|ifndef \w+|endif|define .*)(?=\s)"
+    rf"|namespace lumitip \{{|\}}|constexpr \w+ \w+(?:\[\w*\])? = {_VALUE};))*\s*"
+)
 _LAYOUT, _PROTOCOL = "firmware/layout.h", "firmware/protocol.h"
 _SKETCH = "firmware/firmware.ino"
 
@@ -26,7 +37,9 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     name = re.search(r'#define LUMITIP_DEVICE_NAME "(.*)"$', protocol, re.MULTILINE)
     same = name is not None and _read_string(name[1]) == design.controller.name.encode()
     yield _faults("firmware.name", _PROTOCOL, int(not same), "Bluetooth name")
-    yield _complete(outputs)
+    yield _protocol(protocol, layout)
+    yield _form(wired, protocol)
+    yield _sources(outputs)
 
 
 def _channels(text: str, layout: Layout) -> Measurement:
@@ -90,14 +103,44 @@ def _hash(wired: str, protocol: str, layout: Layout) -> Measurement:
     return _faults("firmware.hash", _LAYOUT, faults, "equals the layout's")
 
 
-def _complete(outputs: Path) -> Measurement:
-    """Every header that a file includes is there, and the sketch is named like its folder."""
-    folder = outputs / "firmware"
-    files = [f for f in sorted(folder.glob("*")) if f.suffix in (".h", ".ino")]
-    asked = {n for f in files for n in re.findall(r'#include "([^"]+)"', _text(f))}
-    missing = sorted(n for n in asked | {Path(_SKETCH).name} if not (folder / n).is_file())
-    note = "missing: " + ", ".join(missing) if missing else f"of {len(files)}"
-    return Measurement("firmware.complete", _SKETCH, len(missing), 0, 0, "files", note)
+def _protocol(text: str, layout: Layout) -> Measurement:
+    """Values that packets, links and the compiler are held against, as the readout has them."""
+    pairs = zip(layout.mux.tolist(), layout.channel.tolist(), strict=True)
+    wired = b"".join(bytes([mux & 0xFF, mux >> 8, channel]) for mux, channel in pairs)
+    wanted = {
+        "MAGIC": f"0x{packet.MAGIC:02x}",
+        "VERSION": f"{packet.VERSION}",
+        "WIRING_SUM": f"0x{crc_hqx(wired, 0xFFFF):04x}",
+        "SERVICE_UUID[]": f'"{bluetooth.SERVICE}"',
+        "FRAMES_UUID[]": f'"{bluetooth.FRAMES}"',
+        "STATUS_UUID[]": f'"{bluetooth.STATUS}"',
+        "LEGACY_SERVICE_UUID[]": f'"{bluetooth.LEGACY_SERVICE[4:8]}"',
+        "LEGACY_FRAMES_UUID[]": f'"{bluetooth.LEGACY_FRAMES[4:8]}"',
+    }
+    wrong = [name for name, value in wanted.items() if f" {name} = {value};" not in text]
+    return _faults("firmware.protocol", _PROTOCOL, len(wrong), ", ".join(wrong) or "UUIDs, sums")
+
+
+def _form(*headers: str) -> Measurement:
+    """Whether a compiler can read both headers: constants, and settings with a balanced `#if`."""
+    wrong = 0
+    for text in headers:
+        code = _COMMENT.sub("", text)
+        wrong += _HEADER.fullmatch(code) is None
+        wrong += code.count("#ifndef") != code.count("#endif")
+        wrong += code.count("{") != code.count("}")
+        wrong += code.count("namespace") != 1
+    return _faults("firmware.form", _LAYOUT, wrong, "constants and settings alone")
+
+
+def _sources(outputs: Path) -> Measurement:
+    """The files that all designs share are there, and as they are shipped."""
+    wrong = [
+        source.name
+        for source in firmware_sources()
+        if sha256_of(outputs / "firmware" / source.name) != sha256_of(source)
+    ]
+    return count("firmware.sources", _SKETCH, wrong, "files are missing or not as shipped")
 
 
 def _faults(check: str, subject: str, faults: int, note: str) -> Measurement:

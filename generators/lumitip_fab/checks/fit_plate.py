@@ -11,7 +11,6 @@ from lumitip_fab.checks.printed import (
     circles,
     holes_at,
     measure_bed,
-    measure_boxes,
     measure_closed,
 )
 from lumitip_fab.checks.readers import solids
@@ -21,7 +20,7 @@ from lumitip_fab.checks.spans import longest_span_mm
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
-READS = ("fit/*.stl", "fit/*.3mf", "fit/*.step")
+READS = ("fit/*.stl",)
 SIZE_MM = 0.05
 VOLUME_FRACTION = 0.05
 LEAST_BED_MM2 = 25.0  # of a coupon
@@ -54,8 +53,6 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     plate = FitCoupons("fit_plate", _FILE, mesh, design)
     yield plate.figure("readable", len(mesh.faces), 4, np.inf, "triangles")
     yield from measured(MEASURES, plate)
-    coupons = len(design.fit_plate.steps)
-    yield from measure_boxes("fit_plate", outputs, _FILE, mesh.bounds, mesh.bounds, coupons)
 
 
 def measure_body(plate: FitCoupons) -> Iterator[Measurement]:

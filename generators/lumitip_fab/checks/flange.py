@@ -20,7 +20,6 @@ from lumitip_fab.checks.printed import (
     islands_at,
     measure_bed,
     measure_closed,
-    measure_corners,
     room,
     round_thread,
 )
@@ -32,7 +31,7 @@ from lumitip_fab.design import Design, Flange
 from lumitip_fab.design.frames import flange_beds, gripper_to_tool
 from lumitip_fab.errors import OutputError
 
-READS = ("flange/*.stl", "flange/*.3mf", "flange/*.step", "boards/flange/*.kicad_pcb")
+READS = ("flange/*.stl", "boards/flange/*.kicad_pcb")
 
 SIZE_MM = 0.05
 HOLE_MM = 0.05
@@ -61,9 +60,6 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
                 continue
             meshes[part] = solids.moved(lying, bed)
             yield from _printed(subject, lying, design)
-            yield from measure_corners(
-                "flange", outputs, subject, lying.bounds, meshes[part].vertices
-            )
         try:
             board = read_any(outputs, design, flange.auxiliary)
         except (OutputError, LookupError) as error:

@@ -17,7 +17,7 @@ import shapely
 
 from lumitip.errors import LayoutError
 from lumitip.layout import Layout
-from lumitip_fab.checks.printed import measure_bed, measure_boxes, measure_closed
+from lumitip_fab.checks.printed import measure_bed, measure_closed
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.scene import Scene, read_scene
 from lumitip_fab.checks.result import Measure, Measurement, Subject, measured, unreadable
@@ -100,7 +100,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     for card in design.gauge_cards:
         try:
             standing = solids.read_mesh(outputs / card.file)
-            yield from _prints(outputs, standing, card, design)
+            yield from _prints(standing, card, design)
             layout, scene = Layout.load(outputs / "layout.json"), read_scene(outputs / _SCENE)
             plates = [outputs / f"backing/{f.name}_backing.stl" for f in design.fingers]
             backings = [solids.moved(solids.read_mesh(plate), lying) for plate in plates]
@@ -135,7 +135,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             yield from measured(MEASURES, placed)
 
 
-def _prints(outputs: Path, standing: Any, card: GaugeCard, design: Design) -> Iterator[Measurement]:
+def _prints(standing: Any, card: GaugeCard, design: Design) -> Iterator[Measurement]:
     """One closed body that lies on the bed with its blade's face, and its walls."""
     of = Subject("gauge_card", card.file)
     yield from measure_closed(of, standing)
@@ -145,8 +145,6 @@ def _prints(outputs: Path, standing: Any, card: GaugeCard, design: Design) -> It
     blade = Exempt("blade", card.blade_mm, lambda at: at[:, 2] < card.blade_mm + _NEAR_MM)
     least = design.printing.min_wall_mm
     yield from walls("gauge_card.min_wall", card.file, standing, least, (blade,))
-    sensor = solids.moved(standing, gauge_bed_to_sensor(card))
-    yield from measure_boxes("gauge_card", outputs, card.file, standing.bounds, sensor.bounds)
 
 
 def _targets(path: Path) -> tuple[dict[str, Any], list[Target]]:

@@ -18,7 +18,6 @@ from lumitip_fab.checks.printed import (
     holes_at,
     measure_bed,
     measure_closed,
-    measure_corners,
     room,
     round_nut,
     round_thread,
@@ -30,7 +29,7 @@ from lumitip_fab.design import Design, Fastener, Holder
 from lumitip_fab.design.frames import holder_bed_to_auxiliary, rotation_y, translation
 from lumitip_fab.errors import OutputError
 
-READS = ("holder/*.stl", "holder/*.3mf", "holder/*.step", "boards/*.kicad_pcb")
+READS = ("holder/*.stl", "boards/*.kicad_pcb")
 
 SIZE_MM = 0.05
 HOLE_MM = 0.05
@@ -69,7 +68,6 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         clip = Clip("holder", subject, standing, mesh, holder, board, design)
         yield clip.figure("readable", len(mesh.faces), 4, math.inf, "triangles")
         yield from measured(MEASURES, clip)
-        yield from measure_corners("holder", outputs, subject, standing.bounds, mesh.vertices)
 
 
 def measure_print(clip: Clip) -> Iterator[Measurement]:

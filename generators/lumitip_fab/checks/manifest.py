@@ -1,13 +1,13 @@
 """`manifest.json` against the files it lists: their bytes, and the frames it says they are in."""
 
-from collections.abc import Iterator
-from pathlib import Path
+from collections.abc import Iterator, Mapping
+from pathlib import Path, PurePath
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumitip_fab.checks.readers.vertices import corners_mm
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.design.frames import Matrix, applied
 from lumitip_fab.errors import OutputError
@@ -18,6 +18,11 @@ Vector = NDArray[np.float64]
 READS = ("*",)
 _FILE = "manifest.json"
 _PLACE_MM = 0.05
+_SQUARE, _SCALES = 1e-6, (1.0, 1000.0)
+_RECORDS = (".json", ".xml", "")
+"""Kinds of which people and programs keep reports and settings beside the design's files."""
+_OWN = (".", "~", "_autosave-")
+"""What names of files begin with that editors keep while they work."""
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -30,10 +35,41 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     changed = [p for p, e in recorded.files.items() if manifest.sha256_of(outputs / p) != e.sha256]
     note = ", ".join(changed[:3]) or f"of {len(recorded.files)}"
     yield Measurement("manifest.files", _FILE, len(changed), 0, 0, "missing or changed", note)
+    yield count("manifest.strays", ".", sorted(_strays(outputs, recorded.files)), "files")
+    odd = [path for path, entry in sorted(recorded.files.items()) if not _motion(entry.to_sensor)]
+    yield count("manifest.matrices", _FILE, odd, "matrices that are no motion or mirror image")
     for path, entry in sorted(recorded.files.items()):
+        if path in odd:
+            continue
         placed = path.startswith(("backing/", "interface/", "mould/", "mask/", "gauge/"))
         if path.endswith(".stl") and placed and entry.frame:
             yield _frame(outputs, path, np.array(entry.to_sensor), design)
+
+
+def _motion(rows: object) -> bool:
+    """Whether rows of numbers move, turn or mirror a body as it is, in mm or in metres."""
+    try:
+        matrix = np.array(rows)
+        square, last = matrix[:3, :3] @ matrix[:3, :3].T, matrix[3]
+        return matrix.dtype.kind in "if" and bool(
+            any(np.allclose(square / scale**2, np.eye(3), atol=_SQUARE) for scale in _SCALES)
+            and (last == (0, 0, 0, 1)).all()
+        )
+    except (ValueError, IndexError, TypeError):
+        return False
+
+
+def _strays(outputs: Path, listed: Mapping[str, manifest.Entry]) -> Iterator[str]:
+    """Files of no build that could be sent or printed for one of the design's: they lie in its
+    folders, and are of a kind that is listed there."""
+    kinds = {(path.parent, path.suffix) for path in map(PurePath, listed)}
+    for folder in sorted({folder for folder, _ in kinds}):
+        for file in sorted((outputs / folder).glob("*")):
+            path = (folder / file.name).as_posix()
+            kind = folder, file.suffix
+            known = path in listed or file.suffix in _RECORDS or file.name.startswith(_OWN)
+            if kind in kinds and not known:
+                yield path
 
 
 def _frame(outputs: Path, path: str, matrix: Matrix, design: Design) -> Measurement:

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.printed import three_mf_mm
 from lumitip_fab.checks.readers import MALFORMED, solids
 from lumitip_fab.checks.readers.mask_page import Page, PageError, read_page
+from lumitip_fab.checks.readers.three_mf import three_mf_triangles
 from lumitip_fab.checks.result import Measurement, Subject, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
@@ -61,7 +61,7 @@ def _printed(read: Subject, outputs: Path, design: Design) -> Iterator[Measureme
     """The printed piece: size, thickness, no hole, and the same in the 3MF."""
     try:
         mesh = solids.read_mesh(outputs / read.subject)
-        packed = three_mf_mm(outputs / "mask/coupon.3mf")
+        packed = three_mf_triangles(outputs / "mask/coupon.3mf").reshape(-1, 3)
     except (OutputError, OSError, *MALFORMED) as error:
         yield unreadable("mask_coupon.covers", read.subject, str(error))
         return

@@ -13,10 +13,11 @@ from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks.mask_drawings import Film, read_film
 from lumitip_fab.checks.mask_holes import edges_apart, sizes_at
-from lumitip_fab.checks.printed import measure_closed, three_mf_mm
+from lumitip_fab.checks.printed import measure_closed
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.mask_page import PageError
 from lumitip_fab.checks.readers.tables import unpacked
+from lumitip_fab.checks.readers.three_mf import three_mf_triangles
 from lumitip_fab.checks.result import Measure, Measurement, Subject, measured, unreadable
 from lumitip_fab.design import Box, Design, Finger
 from lumitip_fab.design.frames import sheet_bed_to_sensor
@@ -164,7 +165,7 @@ def measure_three_mf(read: PrintedMask) -> Iterator[Measurement]:
     """The same corners in the 3MF, and how to print it."""
     path, sheet = read.subject.replace(".stl", ".3mf"), read.design.mask.sheet
     try:
-        corners = three_mf_mm(read.outputs / path)
+        corners = three_mf_triangles(read.outputs / path).reshape(-1, 3)
         model = unpacked(read.outputs / path)["3D/3dmodel.model"].decode()
         there = cKDTree(corners).query(read.mesh.vertices)[0].max()
         back = cKDTree(read.mesh.vertices).query(corners)[0].max()

@@ -14,7 +14,6 @@ from shapely.errors import GEOSException
 
 from lumitip_fab.checks.mould_grip import measure_grip
 from lumitip_fab.checks.mould_note import measure_note, measure_volume
-from lumitip_fab.checks.printed import measure_boxes
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement, Subject, unreadable
 from lumitip_fab.checks.walls import Mask, beside, measure_relief, walls
@@ -34,8 +33,6 @@ NAMES = (
     "mould.draft",
     "mould.undercut",
     "mould.min_wall",
-    "mould.three_mf",
-    "mould.step",
     "mould.volume",
     "mould.masses",
     "mould.note",
@@ -94,8 +91,6 @@ def _measured(
     yield measure_relief("mould.letter", file, mesh, finger, letter)
     exempt = (beside(letter, design.printing),)
     yield from walls("mould.min_wall", file, mesh, design.printing.min_wall_mm, exempt)
-    sensor = solids.moved(mesh, mould_bed_to_sensor(design.stack, design.mould))
-    yield from measure_boxes("mould", outputs, file, mesh.bounds, sensor.bounds)
     body = solids.solid(mesh, "the mould")
     yield measure_volume(body, file, outputs, design, finger)
     yield _seat(body, file, outputs, design, finger)

@@ -1,11 +1,9 @@
-"""Printed parts: their mesh in both frames, room round fasteners, and 3MF and STEP against STL."""
+"""Printed parts: their mesh in both frames, and room round fasteners."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 import shapely
@@ -13,15 +11,10 @@ from scipy.spatial import cKDTree
 
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, section
-from lumitip_fab.checks.readers.tables import unpacked
-from lumitip_fab.checks.readers.vertices import step_mm
-from lumitip_fab.checks.result import Clearance, Measurement, Subject, farthest, unreadable
+from lumitip_fab.checks.result import Clearance, Measurement, Subject, farthest
 from lumitip_fab.design import Design, Fastener, Finger, Point
 from lumitip_fab.design.frames import Matrix
-from lumitip_fab.errors import OutputError
 
-AGREE_MM = 0.02
-_NAMESPACE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
 RAY_MM = 5.0  # rays start this far in front of the rim
 ROUND_MM = 0.05  # chords of a mesh, and an axis that is a little off
 HEAD_MM = (0.1, 0.8)  # round a countersunk head
@@ -123,124 +116,7 @@ def measure_bed(of: Subject, mesh: Any, most: float, least: float) -> Iterator[M
     yield of.figure("bed_contact", solids.bed_contact_mm2(mesh), least, math.inf, "mm²")
 
 
-def measure_boxes(
-    prefix: str, outputs: Path, stl: str, standing: Vectors, sensor: Vectors, bodies: int = 1
-) -> Iterator[Measurement]:
-    """How far the boxes round 3MF and STEP differ from the STL's, and what else they hold.
-
-    Args:
-        prefix: of the checks' names.
-        outputs: the output folder.
-        stl: the part's STL file in it; the others lie beside it.
-        standing: bounds of the part in the printer, shape `(2, 3)`.
-        sensor: its bounds in the sensor frame.
-        bodies: how many the STEP file has to hold.
-    """
-    yield _three_mf_of(prefix, outputs, stl, standing)
-    yield _measured(
-        f"{prefix}.step",
-        outputs,
-        stl.replace(".stl", ".step"),
-        lambda path: _step(path, bodies),
-        _from_box(sensor),
-    )
-
-
-def measure_corners(
-    prefix: str, outputs: Path, stl: str, standing: Vectors, corners: Vectors
-) -> Iterator[Measurement]:
-    """The same of a part whose widest places are round, where a STEP file has no corner: how far
-    its corners lie from those of the STL.
-
-    Args:
-        prefix: of the checks' names.
-        outputs: the output folder.
-        stl: the part's STL file in it; the others lie beside it.
-        standing: bounds of the part in the printer, shape `(2, 3)`.
-        corners: the STL's corners in the STEP file's frame, shape `(n, 3)`.
-    """
-    tree = cKDTree(corners)
-
-    def off_mm(points: Vectors) -> float:
-        return float(tree.query(points)[0].max())
-
-    yield _three_mf_of(prefix, outputs, stl, standing)
-    yield _measured(f"{prefix}.step", outputs, stl.replace(".stl", ".step"), _step, off_mm)
-
-
-def measure_polyhedron(
-    prefix: str, outputs: Path, stl: str, standing: Vectors, sensor: Vectors
-) -> Iterator[Measurement]:
-    """How far the corners of 3MF and STEP lie from those of a part with flat faces alone.
-
-    Args:
-        prefix: of the checks' names.
-        outputs: the output folder.
-        stl: the part's STL file in it; the others lie beside it.
-        standing: the design's corners in the printer, shape `(n, 3)`.
-        sensor: its corners in the sensor frame, shape `(n, 3)`.
-    """
-    for check, end, read, corners in (
-        ("three_mf", ".3mf", three_mf_mm, standing),
-        ("step", ".step", _step, sensor),
-    ):
-        path = stl.replace(".stl", end)
-
-        def off_mm(found: Vectors, corners: Vectors = corners) -> float:
-            return apart_mm(found, corners)
-
-        yield _measured(f"{prefix}.{check}", outputs, path, read, off_mm)
-
-
 def apart_mm(found: Vectors, wanted: Vectors) -> float:
     """Farthest distance of a point of one set to the other set, either way (mm)."""
     there, back = (cKDTree(b).query(a)[0] for a, b in ((found, wanted), (wanted, found)))
     return float(max(there.max(), back.max()))
-
-
-def _from_box(bounds: Vectors) -> Callable[[Vectors], float]:
-    """How far the box round some points differs from this one."""
-    return lambda points: float(
-        np.abs(np.array([points.min(axis=0), points.max(axis=0)]) - bounds).max()
-    )
-
-
-def _three_mf_of(prefix: str, outputs: Path, stl: str, standing: Vectors) -> Measurement:
-    path = stl.replace(".stl", ".3mf")
-    return _measured(f"{prefix}.three_mf", outputs, path, three_mf_mm, _from_box(standing))
-
-
-def _measured(
-    check: str,
-    outputs: Path,
-    path: str,
-    read: Callable[[Path], Vectors],
-    off_mm: Callable[[Vectors], float],
-) -> Measurement:
-    try:
-        points = read(outputs / path)
-    except (OutputError, OSError, ValueError, LookupError, SyntaxError) as error:
-        return unreadable(check, path, f"cannot be read: {error!r:.200}")
-    return Measurement(check, path, off_mm(points), 0.0, AGREE_MM, "mm")
-
-
-def three_mf_mm(path: Path) -> Vectors:
-    """Corners of the model in a 3MF file, shape `(n, 3)` (mm).
-
-    Raises:
-        OutputError: if it is no package.
-        ValueError: if its unit is not the millimetre.
-        LookupError: if it has no model.
-    """
-    model = ElementTree.fromstring(unpacked(path)["3D/3dmodel.model"])
-    if model.get("unit") != "millimeter":
-        raise ValueError(f"unit {model.get('unit')!r}, millimeter is needed")
-    vertices = model.iter(f"{_NAMESPACE}vertex")
-    return np.array([[float(v.attrib[axis]) for axis in "xyz"] for v in vertices])
-
-
-def _step(path: Path, bodies: int = 1) -> Vectors:
-    corners, found = step_mm(path)
-    if found != bodies:
-        raise ValueError(f"{found} solids, {bodies} needed")
-    return corners

@@ -25,6 +25,8 @@ from lumitip_fab.pipeline.manifest import sha256_of, write_file
 
 MODULES = (
     "manifest",
+    "derivation",
+    "bodies",
     "layout",
     "firmware",
     "mask",
@@ -46,6 +48,7 @@ MODULES = (
     "board",
     "models",
     "schematic",
+    "libraries",
     "orders",
     "panels",
     "printing",
@@ -60,7 +63,7 @@ MODULES = (
     "heat",
     "manual_pages",
 )
-_LONG = frozenset({"orders", "board"})
+_LONG = frozenset({"orders", "board", "bodies"})
 """Modules that take longer than another process takes to start."""
 _Run = tuple[tuple[Measurement, ...], list[str]]
 """Measurements of a module, and the fields of the design that it read."""

@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 
 from lumitip_fab.checks.mould import along, distances
-from lumitip_fab.checks.printed import RAY_MM, apart_mm, measure_polyhedron
+from lumitip_fab.checks.printed import RAY_MM, apart_mm
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measure, Measurement, Subject, measured, unreadable
 from lumitip_fab.design import Design, Finger, Prop
@@ -85,7 +85,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         except OutputError as error:
             yield unreadable("wrap.prop", prop.file, str(error))
             continue
-        yield from _prop(outputs, printed, prop, design)
+        yield from _prop(printed, prop, design)
         for finger in design.fingers:
             subject = f"mould/{finger.name}_mould.stl"
             try:
@@ -101,8 +101,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             yield from measured(MEASURES, whole)
 
 
-def _prop(outputs: Path, printed: Any, prop: Prop, design: Design) -> Iterator[Measurement]:
-    """One closed body with the design's corners, which its STEP and 3MF have, too."""
+def _prop(printed: Any, prop: Prop, design: Design) -> Iterator[Measurement]:
+    """One closed body with the design's corners."""
     of = Subject("wrap", prop.file)
     edges = solids.open_edges(printed) + abs(solids.bodies(printed) - 1)
     yield of.figure("prop", edges, 0, 0, "edges", "open, or bodies too many")
@@ -115,7 +115,6 @@ def _prop(outputs: Path, printed: Any, prop: Prop, design: Design) -> Iterator[M
     standing = applied(np.asarray(np.linalg.inv(to_sensor), dtype=np.float64), corners)
     apart = apart_mm(np.asarray(printed.vertices), standing)
     yield of.figure("prop", apart, 0, HEIGHT_MM, note="of a corner from its place", at="corners")
-    yield from measure_polyhedron("wrap", outputs, prop.file, standing, corners)
 
 
 def _corners(prop: Prop, design: Design) -> solids.Vectors:

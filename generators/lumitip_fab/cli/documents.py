@@ -1,11 +1,16 @@
-"""The files that describe the design: `layout.json`, `design.json` and `resolved.toml`."""
+"""The files that describe the design: `layout.json`, `design.json` and `resolved.toml`, and what of
+the catalogue is the user's own."""
+
+from collections.abc import Iterator
 
 import tomli_w
 
+from lumitip_fab.catalogue import Catalogue
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.parts import NAMED
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import design_text, encoded
+from lumitip_fab.paths import design_folder, packaged_design, parts_file
 from lumitip_fab.pipeline.artefact import Artefact
 
 _HEAD = """\
@@ -22,7 +27,19 @@ def documents(config: Input, design: Design) -> tuple[Artefact, ...]:
         Artefact("layout.json", design.layout.to_json().encode()),
         Artefact("design.json", design_text(design).encode()),
         Artefact("resolved.toml", _resolved(config).encode(), frame=""),
+        *_own_parts(config),
     )
+
+
+def _own_parts(config: Input) -> Iterator[Artefact]:
+    """Catalogue files that differ from the packaged ones: beside `resolved.toml`, which needs them
+    where it is built."""
+    folder = design_folder(config.sources[0].path)
+    for kind in Catalogue.model_fields:
+        packaged = packaged_design() / "parts" / f"{kind}.toml"
+        data = parts_file(folder, kind).read_bytes()
+        if data != packaged.read_bytes():
+            yield Artefact(f"parts/{kind}.toml", data, frame="")
 
 
 def _resolved(config: Input) -> str:

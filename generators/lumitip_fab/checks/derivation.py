@@ -1,0 +1,59 @@
+"""`design.json` follows from `resolved.toml`: neither was changed without the other."""
+
+import json
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from lumitip_fab.checks.result import Measurement, Subject, unreadable
+from lumitip_fab.config.load import load
+from lumitip_fab.derive import derive
+from lumitip_fab.design import Choice, Design
+from lumitip_fab.design.encoding import encoded
+from lumitip_fab.errors import FabError
+
+READS = ("resolved.toml", "design.json")
+_PARAMETERS, _DESIGN = READS
+_CHOICES = "choices"
+
+
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Derive the design again, and count the figures that differ.
+
+    What was chosen automatically is a plain value in `resolved.toml`, and is compared with that.
+    """
+    try:
+        again = encoded(derive(load(outputs / _PARAMETERS)))
+        values = tomllib.loads((outputs / _PARAMETERS).read_text(encoding="utf-8"))
+        written = json.loads((outputs / _DESIGN).read_text(encoding="utf-8"))
+    except (FabError, OSError, ValueError) as error:
+        yield unreadable("derivation.design", _PARAMETERS, f"cannot be derived: {error!s:.300}")
+        return
+    of = Subject("derivation", _DESIGN)
+    wrong = list(_differing(again | {_CHOICES: []}, written | {_CHOICES: []}, ""))
+    yield of.count("design", wrong, "figures do not follow from resolved.toml")
+    odd = [c.field for c in design.choices if not _has(values, c)]
+    yield of.count("choices", odd, "automatic values are not in resolved.toml")
+
+
+def _differing(one: Any, other: Any, place: str) -> Iterator[str]:
+    """Places at which two JSON values differ."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        for key in sorted(one.keys() | other.keys()):
+            yield from _differing(one.get(key), other.get(key), f"{place}.{key}".lstrip("."))
+    elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
+        for k, pair in enumerate(zip(one, other, strict=True)):
+            yield from _differing(*pair, f"{place}[{k}]")
+    elif type(one) is not type(other) or one != other:
+        yield place
+
+
+def _has(values: dict[str, Any], choice: Choice) -> bool:
+    """Whether a field of a parameter file has the value that was chosen for it."""
+    section, _, key = choice.field.partition(".")
+    try:
+        chosen = tomllib.loads(f"value = {choice.value}")["value"]
+        return bool(values[section][key] == chosen)
+    except (ValueError, LookupError, TypeError):
+        return False

@@ -1,0 +1,86 @@
+"""Libraries and rules of a board's project, as KiCad finds them."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from damages import cut_short, edit, excerpt, failing, swap
+
+pytestmark = pytest.mark.slow
+RECEIVER = "boards/receiver"
+PRETTY = f"{RECEIVER}/lumitip.pretty"
+DETECTOR, CHIP = f"{PRETTY}/PTRC2012X80N.kicad_mod", f"{PRETTY}/SOP65P640X110-16N.kicad_mod"
+SYMBOLS, PROJECT = f"{RECEIVER}/lumitip.kicad_sym", f"{RECEIVER}/receiver.kicad_pro"
+Damage = Callable[[Path], None]
+
+
+def edited(file: str, old: str, new: str) -> Damage:
+    return lambda folder: edit(folder / file, old, new)
+
+
+def on_the_back(folder: Path) -> None:
+    """The photodetector's pads on the other side."""
+    path = folder / DETECTOR
+    path.write_text(path.read_text().replace('"F.Cu" "F.Paste" "F.Mask"', '"B.Cu" "B.Mask"'))
+
+
+def pad_moved_on_the_board(folder: Path) -> None:
+    path = folder / f"{RECEIVER}/receiver.kicad_pcb"
+    text = path.read_text()
+    changed = re.sub(r'(\(pad "1" smd rect \(at )-?[\d.]+ ', r"\g<1>-1.3 ", text, count=1)
+    assert changed != text
+    path.write_text(changed)
+
+
+DAMAGES: dict[str, tuple[Damage, set[str]]] = {
+    "kind": (edited(f"{RECEIVER}/fp-lib-table", '"KiCad"', '"Eagle"'), {"tables"}),
+    "name": (edited(f"{RECEIVER}/sym-lib-table", '"lumitip"', '"parts"'), {"tables"}),
+    "place": (edited(f"{RECEIVER}/sym-lib-table", ".kicad_sym", ".kicad_sim"), {"tables"}),
+    "two tables": (
+        lambda folder: swap(
+            folder / f"{RECEIVER}/fp-lib-table", folder / f"{RECEIVER}/sym-lib-table"
+        ),
+        {"tables"},
+    ),
+    "pad moved": (edited(DETECTOR, "(at 1.175 0 0)", "(at 1.275 0 0)"), {"footprints"}),
+    "pad wider": (edited(DETECTOR, "(size 1.1 1.25)", "(size 1.2 1.25)"), {"footprints"}),
+    "pad turned": (edited(DETECTOR, "(at 1.175 0 0)", "(at 1.175 0 90)"), {"footprints"}),
+    "numbers swapped": (edited(CHIP, '(pad "1"', '(pad "17"'), {"footprints"}),
+    "courtyard": (edited(DETECTOR, "(start -1.975 0.875)", "(start -1.5 0.875)"), {"footprints"}),
+    "model": (edited(DETECTOR, "PTRC2012X80N.step", "PTRC.step"), {"footprints"}),
+    "on the back": (on_the_back, {"footprints"}),
+    "the board's pad": (pad_moved_on_the_board, {"footprints"}),
+    "footprint gone": (lambda folder: (folder / CHIP).unlink(), {"footprints"}),
+    "footprint cut": (lambda folder: cut_short(folder / CHIP, 700), {"footprints"}),
+    "pin": (edited(SYMBOLS, "(at 0 3.81 270)", "(at 0 2.54 270)"), {"symbols"}),
+    "kind of pin": (edited(SYMBOLS, "pin passive", "pin output"), {"symbols"}),
+    "symbol's name": (edited(SYMBOLS, '(symbol "R"', '(symbol "RR"'), {"symbols"}),
+    "symbols gone": (lambda folder: (folder / SYMBOLS).unlink(), {"symbols", "tables"}),
+    "clearance": (edited(PROJECT, '"min_clearance": 0.', '"min_clearance": 1.'), {"project"}),
+    "track": (edited(PROJECT, '"min_track_width": 0.', '"min_track_width": -0.'), {"project"}),
+    "severity": (edited(PROJECT, '"error"', '"errors"'), {"project"}),
+    "net": (edited(PROJECT, '"pattern": "GND"', '"pattern": "EARTH"'), {"project"}),
+    "class": (edited(PROJECT, '"name": "signal"', '"name": "other"'), {"project"}),
+    "file name": (edited(PROJECT, "receiver.kicad_pro", "emitter.kicad_pro"), {"project"}),
+    "no JSON": (edited(PROJECT, "{", "["), {"project"}),
+}
+
+
+@pytest.fixture
+def board(outputs: Path, tmp_path: Path) -> Path:
+    """The boards' folders, to damage."""
+    return excerpt(outputs, tmp_path / "copied", "boards")
+
+
+@pytest.mark.parametrize("case", DAMAGES)
+def test_a_damaged_project(case: str, board: Path) -> None:
+    damage, wanted = DAMAGES[case]
+    damage(board)
+    assert failing(board, "libraries") == wanted
+
+
+@pytest.mark.parametrize("preset", ["published", "dense", "integrated", "asymmetric", "flex"])
+def test_projects_of_presets_pass(preset: str, built: Callable[[str], Path]) -> None:
+    assert failing(built(preset), "libraries") == set()
