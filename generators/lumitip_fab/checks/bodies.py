@@ -25,6 +25,8 @@ Shapes = Mapping[Path, StepShape | OutputError]
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:  # noqa: ARG001
     """Hold every 3MF and STEP that has an STL beside it against that."""
     files = manifest.read(outputs).files
+    if not files:
+        yield unreadable("bodies.stl", manifest.NAME, "lists no file")
     stems = [path.removesuffix(".stl") for path in sorted(files) if path.endswith(".stl")]
     parts = {s: [f"{s}{end}" for end in (".3mf", ".step") if f"{s}{end}" in files] for s in stems}
     steps = [outputs / path for paths in parts.values() for path in paths if path.endswith("step")]
