@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator, Sequence
 
 from numpy.random import Generator
 
-from mutations.damage import Mutator, NothingToDamage
+from mutations.damage import Mutator, NotApplicableError
 
 LEAST_SHARE, MOST_SHARE = 0.03, 0.6
 LEAST_MM, MOST_MM = 0.25, 3.0
-NUMBER = re.compile(r"(?<![\w.\-+#])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.]|-\d)")
+NUMBER = re.compile(r"(?<![\w.\-+#])[-+]?(?:\d+(?:\.\d+)?|\.\d+)(?:[eE][-+]?\d+)?(?!\w|\.\d|-\d)")
 WORD = re.compile(r"(?<![\w-])[^\W\d_]{4,}(?![\w-])")
 Span = tuple[int, int]
 Skip = re.Pattern[str] | None
@@ -53,7 +53,7 @@ def factor(rng: Generator) -> float:
 def one_of(items: Sequence[Span], rng: Generator) -> Span:
     """One of some spans."""
     if not items:
-        raise NothingToDamage
+        raise NotApplicableError
     return items[int(rng.integers(len(items)))]
 
 
@@ -119,7 +119,7 @@ def word_changed(pattern: re.Pattern[str] = WORD, skip: Skip = None) -> Mutator:
         old = text[slice(*span)]
         others = sorted({text[slice(*s)] for s in found if text[slice(*s)].lower() != old.lower()})
         if not others:
-            raise NothingToDamage
+            raise NotApplicableError
         return put(text, span, others[int(rng.integers(len(others)))])
 
     return mutate
@@ -169,7 +169,7 @@ def replaced(*pairs: tuple[str, str]) -> Mutator:
         text = data.decode()
         fitting = [(old, new) for old, new in pairs if old in text]
         if not fitting:
-            raise NothingToDamage
+            raise NotApplicableError
         old, new = fitting[int(rng.integers(len(fitting)))]
         return text.replace(old, new).encode(), f"every {old!r} becomes {new!r}"
 
@@ -190,5 +190,5 @@ def cut_short(data: bytes, rng: Generator) -> tuple[bytes, str]:
     """Keep only the beginning: as when a disk is full."""
     kept = int(len(data) * rng.uniform(0.1, 0.9))
     if data[kept:].strip() == b"":
-        raise NothingToDamage
+        raise NotApplicableError
     return data[:kept], f"only the first {kept} of {len(data)} bytes are left"

@@ -11,7 +11,7 @@ Mutators = Mapping[str, Mutator]
 """Mutators of a format, by kind."""
 
 
-class NothingToDamage(Exception):
+class NotApplicableError(Exception):
     """This file, or the place that was drawn in it, has nothing that the mutator could change."""
 
 

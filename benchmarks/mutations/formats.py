@@ -4,12 +4,12 @@ from pathlib import Path, PurePosixPath
 
 from numpy.random import Generator
 
-from mutations.damage import Mutators, NothingToDamage
+from mutations.damage import Mutators, NotApplicableError
 from mutations.drawings import DXF, SVG
 from mutations.expressions import KICAD
 from mutations.gerbers import ORDER
 from mutations.pages import PDF
-from mutations.records import CIR, CSV, INI, JSON, TOML
+from mutations.records import CIR, CSV, INI, JSON, KICAD_PROJECT, TOML
 from mutations.robots import ROBOT
 from mutations.scenes import GLB, PNG
 from mutations.solids import STL, THREEMF
@@ -28,7 +28,7 @@ BY_SUFFIX: dict[str, Mutators] = {
     ".kicad_sch": KICAD,
     ".kicad_mod": KICAD,
     ".kicad_sym": KICAD,
-    ".kicad_pro": JSON,
+    ".kicad_pro": KICAD_PROJECT,
     "": KICAD,  # fp-lib-table, sym-lib-table
     ".csv": CSV,
     ".json": JSON,
@@ -83,6 +83,6 @@ def of_whole_file(
     alike = [p for p in paths if artefact(p) == artefact(path) and suffix(p) == suffix(path)]
     others = [p for p in alike if (out / p).read_bytes() != data]
     if not others:
-        raise NothingToDamage
+        raise NotApplicableError
     other = others[int(rng.integers(len(others)))]
     return {path: (out / other).read_bytes(), other: data}, f"swapped with {other}"

@@ -12,7 +12,7 @@ from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks.readers.gerber import gerber_area
 from mutations.amounts import changed, cut_short, distance_mm, factor, put, replaced
-from mutations.damage import Mutator, Mutators, NothingToDamage
+from mutations.damage import Mutator, Mutators, NotApplicableError
 from mutations.records import CSV, PLAIN
 from mutations.solids import in_zip
 
@@ -45,7 +45,7 @@ def painting(damage: Mutator) -> Mutator:
                 return new, done
             if before.symmetric_difference(after).area > _LEAST_MM2:
                 return new, done
-        raise NothingToDamage
+        raise NotApplicableError
 
     return mutate
 
@@ -53,7 +53,7 @@ def painting(damage: Mutator) -> Mutator:
 def _draws(text: str) -> list[re.Match[str]]:
     found = list(_DRAW.finditer(text))
     if not found:
-        raise NothingToDamage
+        raise NotApplicableError
     return found
 
 
@@ -65,7 +65,7 @@ def _coordinate(data: bytes, rng: Generator) -> tuple[bytes, str]:
     if draw[1] and draw[2]:
         axis = int(rng.integers(1, 3))
     if draw[axis] is None:
-        raise NothingToDamage
+        raise NotApplicableError
     new = int(draw[axis]) + round(distance_mm(rng) * _UNITS_PER_MM)
     return put(text, draw.span(axis), f"{'-' if new < 0 else ''}{abs(new):010d}")
 
@@ -81,7 +81,7 @@ def _aperture(data: bytes, rng: Generator) -> tuple[bytes, str]:
     text = data.decode()
     found = list(_APERTURE.finditer(text))
     if not found:
-        raise NothingToDamage
+        raise NotApplicableError
     aperture = found[int(rng.integers(len(found)))]
     sizes = aperture[1].split("X")
     at = int(rng.integers(len(sizes)))
@@ -101,7 +101,12 @@ def _whole(data: bytes, rng: Generator) -> tuple[bytes, str]:
         new = (old + round(move * _UNITS_PER_MM), round(old * by), -old)[how]
         return f"{axis}{'-' if new < 0 else ''}{abs(new):010d}"
 
-    new = re.sub(rf"(?m)(?<=^){axis}(-?\d+)|(?<=\d){axis}(-?\d+)(?=\D)", lambda m: change(re.match(r".(-?\d+)", m[0])), text)  # type: ignore[arg-type]
+    # Not in %ADD…, and not the I and J of arcs, which are distances.
+    lines = (
+        line if line.startswith(("%", "G04")) else re.sub(rf"{axis}(-?\d+)", change, line)
+        for line in text.splitlines(keepends=True)
+    )
+    new = "".join(lines)
     return new.encode(), f"all {axis} {(f'moved by {move:g} mm', f'times {by:g}', 'negated')[how]}"
 
 
@@ -135,7 +140,7 @@ def _hole_moved(data: bytes, rng: Generator) -> tuple[bytes, str]:
 def _hole(text: str, rng: Generator) -> re.Match[str]:
     holes = list(_HOLE.finditer(text))
     if not holes:
-        raise NothingToDamage
+        raise NotApplicableError
     return holes[int(rng.integers(len(holes)))]
 
 
@@ -156,7 +161,7 @@ def _tool(data: bytes, rng: Generator) -> tuple[bytes, str]:
     text = data.decode()
     tools = list(_TOOL.finditer(text))
     if not tools:
-        raise NothingToDamage
+        raise NotApplicableError
     tool = tools[int(rng.integers(len(tools)))]
     return put(text, tool.span(1), changed(tool[1], rng, 0.1))
 
@@ -213,11 +218,12 @@ def _members_swapped(members: dict[str, bytes], rng: Generator) -> str:
     """Two files of one format in each other's place."""
     one = sorted(members)[int(rng.integers(len(members)))]
     others = [
-        n for n in sorted(members)
+        n
+        for n in sorted(members)
         if _of_member(n) is _of_member(one) and members[n] != members[one]
     ]
     if not others:
-        raise NothingToDamage
+        raise NotApplicableError
     other = others[int(rng.integers(len(others)))]
     members[one], members[other] = members[other], members[one]
     return f"{one} and {other} are swapped"

@@ -7,13 +7,15 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
+from trimesh.triangles import closest_point
 
 from mutations.amounts import distance_mm, factor
-from mutations.damage import NothingToDamage
+from mutations.damage import NotApplicableError
 
 Corners = NDArray[np.float64]
 AXES = "xyz"
 ALIKE_MM = 0.2
+_LOOKED_AT = 40
 LEAST_MOMENT_MM4 = 0.5
 """What moving a hole of 1 mm by 0.3 mm in a wall of 2 mm changes. A corner that slides along its
 own edge, or within its own face, changes nothing: that leaves the body as it is."""
@@ -50,7 +52,7 @@ def scaled(mesh: Mesh, rng: Generator) -> tuple[Mesh, str]:
     size, by = np.ptp(mesh.corners, axis=0), factor(rng)
     axes = [int(rng.integers(3))] if rng.random() < 0.5 else [0, 1, 2]
     if size[axes].max() * abs(by - 1) < ALIKE_MM:
-        raise NothingToDamage
+        raise NotApplicableError
     scale = np.where(np.isin(range(3), axes), by, 1.0)
     named = "".join(AXES[a] for a in axes)
     return Mesh(mesh.corners * scale, mesh.faces), f"scaled by {by:g} along {named}"
@@ -67,9 +69,27 @@ def mirrored(mesh: Mesh, rng: Generator) -> tuple[Mesh, str]:
     axis = int(rng.integers(3))
     corners = mesh.corners.copy()
     corners[:, axis] = corners[:, axis].min() + corners[:, axis].max() - corners[:, axis]
-    if cKDTree(mesh.corners).query(corners)[0].max() < ALIKE_MM:
-        raise NothingToDamage
+    if _farthest_mm(mesh, corners) < ALIKE_MM:
+        raise NotApplicableError
     return Mesh(corners, mesh.faces[:, ::-1]), f"mirrored in {AXES[axis]}"
+
+
+def _farthest_mm(mesh: Mesh, points: Corners) -> float:
+    """Distance from a mesh's surface of the point farthest from it, nearly.
+
+    Only points far from every corner are looked at: both sides of a rounded edge may have their
+    corners at other places of one curve.
+    """
+    far = points[cKDTree(mesh.corners).query(points)[0].argsort()[-_LOOKED_AT:]]
+    triangles = mesh.corners[mesh.faces]
+    return max(
+        float(
+            np.linalg.norm(
+                closest_point(triangles, np.tile(p, (len(triangles), 1))) - p, axis=1
+            ).min()
+        )
+        for p in far
+    )
 
 
 def part_moved(mesh: Mesh, rng: Generator) -> tuple[Mesh, str]:
@@ -84,7 +104,7 @@ def part_moved(mesh: Mesh, rng: Generator) -> tuple[Mesh, str]:
         changed = Mesh(mesh.corners + inside[:, None] * shift, mesh.faces)
         if not inside.all() and np.abs(changed.moments - mesh.moments).max() > LEAST_MOMENT_MM4:
             return changed, f"{inside.sum()} corners round {_place(seed)} moved by {_place(shift)}"
-    raise NothingToDamage
+    raise NotApplicableError
 
 
 def dented(mesh: Mesh, rng: Generator) -> tuple[Mesh, str]:
@@ -100,7 +120,7 @@ def dented(mesh: Mesh, rng: Generator) -> tuple[Mesh, str]:
         changed = Mesh(mesh.corners + inside[:, None] * shift, mesh.faces)
         if np.abs(changed.moments - mesh.moments).max() > LEAST_MOMENT_MM4:
             return changed, f"{inside.sum()} corners at {_place(seed)} moved by {_place(shift)}"
-    raise NothingToDamage
+    raise NotApplicableError
 
 
 def halved(mesh: Mesh, rng: Generator) -> tuple[Mesh, str]:
@@ -109,7 +129,7 @@ def halved(mesh: Mesh, rng: Generator) -> tuple[Mesh, str]:
     middles = mesh.corners[mesh.faces].mean(axis=1)[:, axis]
     kept = middles < np.median(middles)
     if kept.all() or not kept.any():
-        raise NothingToDamage
+        raise NotApplicableError
     return Mesh(mesh.corners, mesh.faces[kept]), f"the half towards +{AXES[axis]} is gone"
 
 
@@ -119,7 +139,7 @@ def opened(mesh: Mesh, rng: Generator) -> tuple[Mesh, str]:
     seed = middles[int(rng.integers(len(middles)))]
     gone = np.linalg.norm(middles - seed, axis=1) < rng.uniform(0.5, 5)
     if gone.all():
-        raise NothingToDamage
+        raise NotApplicableError
     return Mesh(mesh.corners, mesh.faces[~gone]), f"{gone.sum()} triangles at {_place(seed)} gone"
 
 

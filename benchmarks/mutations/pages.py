@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from pikepdf import Array, Dictionary, Name, Operator, Pdf
 
 from mutations.amounts import changed, cut_short
-from mutations.damage import Mutator, Mutators, NothingToDamage
+from mutations.damage import Mutator, Mutators, NotApplicableError
 
 _PIXELS_PER_POINT = 200 / 72
 _DARKER = 60  # of 255
+_DARK, _LIGHT = 80, 200
 _LEAST_PIXELS = 20  # 0.3 mm²
 _MM = 72 / 25.4
 _PLACED = frozenset({"m", "l", "re", "c", "cm", "w", "Tm", "Td", "Tf", "g", "rg"})
@@ -42,7 +43,7 @@ def looks_alike(one: bytes, other: bytes, page: int) -> bool:
     before, after = (np.int16(painted(data, page)) for data in (one, other))
     if before.shape != after.shape:
         return False
-    return np.count_nonzero(np.abs(before - after) > _DARKER) < _LEAST_PIXELS
+    return bool(np.count_nonzero(np.abs(before - after) > _DARKER) < _LEAST_PIXELS)
 
 
 def on_a_page(damage: PageDamage) -> Mutator:
@@ -54,7 +55,7 @@ def on_a_page(damage: PageDamage) -> Mutator:
             done = damage(pdf, pdf.pages[number], rng)
             new = _saved(pdf)
         if looks_alike(data, new, number):
-            raise NothingToDamage
+            raise NotApplicableError
         return new, f"page {number + 1}: {done}"
 
     return mutate
@@ -74,7 +75,7 @@ def _number(pdf: Pdf, page: pikepdf.Page, rng: Generator) -> str:
     steps = list(pikepdf.parse_content_stream(page))
     names = sorted({str(s.operator) for s in steps} & _PLACED)
     if not names:
-        raise NothingToDamage
+        raise NotApplicableError
     name = names[int(rng.integers(len(names)))]
     places = [i for i, s in enumerate(steps) if str(s.operator) == name]
     place = places[int(rng.integers(len(places)))]
@@ -102,7 +103,7 @@ def _block(steps: list[object], rng: Generator) -> tuple[int, int]:
         if name not in {"m", "l", "c", "re", "h"}:
             path = i
     if not blocks:
-        raise NothingToDamage
+        raise NotApplicableError
     return blocks[int(rng.integers(len(blocks)))]
 
 
@@ -127,16 +128,22 @@ def _doubled(pdf: Pdf, page: pikepdf.Page, rng: Generator) -> str:
 
 def _spot(pdf: Pdf, page: pikepdf.Page, rng: Generator) -> str:
     """A white or black square of 0.7 to 5 mm over what is there."""
-    low_x, low_y, high_x, high_y = (float(v) for v in page.mediabox)
-    size = float(rng.uniform(0.7, 5)) * _MM
-    x, y = (float(rng.uniform(0.3, 0.7)) * s for s in (high_x - low_x, high_y - low_y))
+    pixels = painted(_saved(pdf), pdf.pages.index(page))
     grey = int(rng.integers(2))
-    page.contents_add(f"q {grey} g {x:.2f} {y:.2f} {size:.2f} {size:.2f} re f Q".encode())
+    rows, columns = np.nonzero(pixels < _DARK if grey else pixels > _LIGHT)
+    if not len(rows):
+        raise NotApplicableError
+    at = int(rng.integers(len(rows)))
+    size = float(rng.uniform(0.7, 5)) * _MM
+    x = float(columns[at]) / _PIXELS_PER_POINT - size / 2
+    y = (pixels.shape[0] - float(rows[at])) / _PIXELS_PER_POINT - size / 2
+    page.contents_add(b"q", prepend=True)
+    page.contents_add(f"Q {grey} g {x:.2f} {y:.2f} {size:.2f} {size:.2f} re f".encode())
     colour = ("black", "white")[grey]
     return f"a {colour} square of {size / _MM:.2f} mm at {x / _MM:.1f}, {y / _MM:.1f} mm"
 
 
-def _transparent(pdf: Pdf, page: pikepdf.Page, rng: Generator) -> str:
+def _transparent(_pdf: Pdf, page: pikepdf.Page, rng: Generator) -> str:
     """All that is painted lets light through, by a graphics state."""
     alpha = round(float(rng.uniform(0.2, 0.7)), 2)
     page.add_resource(Dictionary(ca=alpha, CA=alpha), Name.ExtGState, Name.Fade)
@@ -144,20 +151,25 @@ def _transparent(pdf: Pdf, page: pikepdf.Page, rng: Generator) -> str:
     return f"all is painted with {alpha:g} of its darkness"
 
 
-def _placed(pdf: Pdf, page: pikepdf.Page, rng: Generator) -> str:
+def _placed(_pdf: Pdf, page: pikepdf.Page, rng: Generator) -> str:
     """The whole page scaled, mirrored or moved by a matrix."""
     wide, high = float(page.mediabox[2]), float(page.mediabox[3])
     by, move = float(rng.uniform(1.02, 1.2)), float(rng.uniform(3, 30))
     matrix = (
-        (by, 0, 0, 1, 0, 0), (1, 0, 0, by, 0, 0), (by, 0, 0, by, 0, 0), (-1, 0, 0, 1, wide, 0),
-        (1, 0, 0, -1, 0, high), (1, 0, 0, 1, move, 0), (1, 0, 0, 1, 0, move),
+        (by, 0, 0, 1, 0, 0),
+        (1, 0, 0, by, 0, 0),
+        (by, 0, 0, by, 0, 0),
+        (-1, 0, 0, 1, wide, 0),
+        (1, 0, 0, -1, 0, high),
+        (1, 0, 0, 1, move, 0),
+        (1, 0, 0, 1, 0, move),
     )[int(rng.integers(7))]
     words = " ".join(f"{v:g}" for v in matrix)
     page.contents_add(f"{words} cm".encode(), prepend=True)
     return f"all is transformed by {words}"
 
 
-def _boxed(pdf: Pdf, page: pikepdf.Page, rng: Generator) -> str:
+def _boxed(_pdf: Pdf, page: pikepdf.Page, rng: Generator) -> str:
     """Another size, corner, crop, direction or unit of the page."""
     box = [float(v) for v in page.mediabox]
     off = float(rng.uniform(0.05, 0.3))
@@ -180,9 +192,11 @@ def _boxed(pdf: Pdf, page: pikepdf.Page, rng: Generator) -> str:
 def _word(pdf: Pdf, page: pikepdf.Page, rng: Generator) -> str:
     """A text with some of its letters changed."""
     steps = list(pikepdf.parse_content_stream(page))
-    texts = [i for i, s in enumerate(steps) if str(s.operator) == "Tj" and len(bytes(s.operands[0])) > 2]
+    texts = [
+        i for i, s in enumerate(steps) if str(s.operator) == "Tj" and len(bytes(s.operands[0])) > 2
+    ]
     if not texts:
-        raise NothingToDamage
+        raise NotApplicableError
     place = texts[int(rng.integers(len(texts)))]
     old = bytes(steps[place].operands[0])
     new = old[::-1]
@@ -209,10 +223,9 @@ def _pages(data: bytes, rng: Generator) -> tuple[bytes, str]:
         return _saved(pdf), done
 
 
-def _emptied(pdf: Pdf, page: pikepdf.Page, rng: Generator) -> str:
+def _emptied(pdf: Pdf, page: pikepdf.Page, _rng: Generator) -> str:
     page.Contents = pdf.make_stream(b"")
     return "nothing is painted"
-
 
 
 PDF: Mutators = {

@@ -18,10 +18,12 @@ from mutations.amounts import (
     removed,
     word_changed,
 )
-from mutations.damage import Mutators, NothingToDamage
+from mutations.damage import Mutators, NotApplicableError
 
 Place = tuple[str | int, ...]
-_UNREAD = re.compile(r"^(\$schema|comment|description)$")
+_UNREAD = re.compile(r"(^|\.)(\$schema|comment|description|tasks|task|\w*color)(\.|$)")
+"""Comments, colours, and what the next build remembers in the manifest of its own steps: at worst
+it runs one once more."""
 _HASH = re.compile(r"^[0-9a-f]{64}$")
 
 
@@ -49,13 +51,35 @@ def _holder(record: Any, place: Place) -> Any:
     return record
 
 
+def _read(data: bytes) -> tuple[Any, list[tuple[Place, Any]]]:
+    """A record and its leaves, but for those that nobody reads.
+
+    In the manifest a file without a frame has a matrix that places nothing.
+    """
+    record = json.loads(data)
+    frameless = {
+        ("files", path, "to_sensor")
+        for path, entry in _files(record).items()
+        if not entry.get("frame")
+    }
+    leaves = (pair for pair in _leaves(record) if not _UNREAD.search(_named(pair[0])))
+    return record, [(p, v) for p, v in leaves if p[:3] not in frameless]
+
+
+def _files(record: Any) -> dict[str, Any]:
+    files = record.get("files") if isinstance(record, dict) else None
+    return files if isinstance(files, dict) else {}
+
+
 def _drawn(found: list[tuple[Place, Any]], rng: Generator) -> tuple[Place, Any]:
     """One of some places, each kind of place (its keys without numbers) as often as another."""
     if not found:
-        raise NothingToDamage
+        raise NotApplicableError
     kinds: dict[str, list[tuple[Place, Any]]] = {}
     for place, value in found:
-        kinds.setdefault(".".join(k for k in place if isinstance(k, str)), []).append((place, value))
+        kinds.setdefault(".".join(k for k in place if isinstance(k, str)), []).append(
+            (place, value)
+        )
     names = sorted(kinds)
     chosen = kinds[names[int(rng.integers(len(names)))]]
     return chosen[int(rng.integers(len(chosen)))]
@@ -73,8 +97,8 @@ def _named(place: Place) -> str:
 
 
 def _json_number(data: bytes, rng: Generator) -> tuple[bytes, str]:
-    record = json.loads(data)
-    numbers = [(p, v) for p, v in _leaves(record) if isinstance(v, int | float) and v is not True and v is not False]
+    record, leaves = _read(data)
+    numbers = [(p, v) for p, v in leaves if type(v) in {int, float}]
     place, old = _drawn(numbers, rng)
     least = LEAST_MM if any(str(key).endswith("_mm") for key in place) else 0.0
     new = json.loads(changed(json.dumps(old), rng, least))
@@ -84,8 +108,8 @@ def _json_number(data: bytes, rng: Generator) -> tuple[bytes, str]:
 
 def _json_text(data: bytes, rng: Generator) -> tuple[bytes, str]:
     """Another text of the file, or one with a letter more."""
-    record = json.loads(data)
-    texts = [(p, v) for p, v in _leaves(record) if isinstance(v, str) and not _UNREAD.match(str(p[-1]))]
+    record, leaves = _read(data)
+    texts = [(p, v) for p, v in leaves if isinstance(v, str)]
     place, old = _drawn(texts, rng)
     alike = sorted({v for p, v in texts if p[-1] == place[-1] and v != old})
     new = alike[int(rng.integers(len(alike)))] if alike else f"{old}x"
@@ -96,19 +120,20 @@ def _json_text(data: bytes, rng: Generator) -> tuple[bytes, str]:
 
 
 def _json_switch(data: bytes, rng: Generator) -> tuple[bytes, str]:
-    record = json.loads(data)
-    place, old = _drawn([(p, v) for p, v in _leaves(record) if isinstance(v, bool)], rng)
+    record, leaves = _read(data)
+    place, old = _drawn([(p, v) for p, v in leaves if isinstance(v, bool)], rng)
     _holder(record, place)[place[-1]] = not old
     return _written(record, data), f"{_named(place)}: {old!r} becomes {not old!r}"
 
 
 def _json_removed(data: bytes, rng: Generator) -> tuple[bytes, str]:
     record = json.loads(data)
-    place, group = _drawn(list(_groups(record)), rng)
-    keys = [k for k in group if not _UNREAD.match(k)] if isinstance(group, dict) else [*range(len(group))]
-    if not keys:
-        raise NothingToDamage
+    groups = [(p, g) for p, g in _groups(record) if not _UNREAD.search(_named(p))]
+    place, group = _drawn(groups, rng)
+    keys = list(group) if isinstance(group, dict) else [*range(len(group))]
     key = keys[int(rng.integers(len(keys)))]
+    if _UNREAD.search(_named((*place, key))):
+        raise NotApplicableError
     del group[key]
     return _written(record, data), f"{_named((*place, key))} is gone"
 
@@ -117,7 +142,9 @@ def _json_swapped(data: bytes, rng: Generator) -> tuple[bytes, str]:
     """Two neighbours of a list in each other's place."""
     record = json.loads(data)
     lists = [
-        (p, g) for p, g in _groups(record) if isinstance(g, list) and len({str(v) for v in g}) > 1
+        (p, g)
+        for p, g in _groups(record)
+        if isinstance(g, list) and len({str(v) for v in g}) > 1 and not _UNREAD.search(_named(p))
     ]
     place, group = _drawn(lists, rng)
     pairs = [(i, j) for i in range(len(group)) for j in range(i) if group[i] != group[j]]
@@ -134,6 +161,9 @@ JSON: Mutators = {
     "swap items": _json_swapped,
     "truncate": cut_short,
 }
+
+KICAD_PROJECT: Mutators = {kind: JSON[kind] for kind in JSON if kind != "swap items"}
+"""Its lists are sets: nets of a class, patterns of names."""
 
 _TOML_COMMENT = re.compile(r"#.*")
 _TOML_TEXT = re.compile(r'= "([^"\n]+)"')
@@ -154,7 +184,8 @@ INI: Mutators = {
     "truncate": cut_short,
 }
 
-_CIR_COMMENT = re.compile(r"^\*.*|^\.end\b.*", re.MULTILINE)
+# Comments, and how finely the simulator steps.
+_CIR_COMMENT = re.compile(r"^\*.*|^\.end\b.*|^\.options.*", re.MULTILINE)
 _CIR_LINE = re.compile(r"^[^*\n].*\n", re.MULTILINE)
 CIR: Mutators = {
     "number": number_changed(skip=_CIR_COMMENT),
@@ -177,7 +208,7 @@ def _table(rows: list[list[str]], data: bytes) -> bytes:
 def _cell(rows: list[list[str]], rng: Generator) -> tuple[int, int]:
     cells = [(i, j) for i in range(1, len(rows)) for j in range(len(rows[i])) if rows[i][j]]
     if not cells:
-        raise NothingToDamage
+        raise NotApplicableError
     return cells[int(rng.integers(len(cells)))]
 
 
@@ -222,7 +253,7 @@ def _csv_swapped(data: bytes, rng: Generator) -> tuple[bytes, str]:
     i, j = _cell(rows, rng)
     others = [k for k in range(1, len(rows)) if len(rows[k]) > j and rows[k][j] != rows[i][j]]
     if not others:
-        raise NothingToDamage
+        raise NotApplicableError
     k = others[int(rng.integers(len(others)))]
     rows[i][j], rows[k][j] = rows[k][j], rows[i][j]
     return _table(rows, data), f"{rows[0][j]} of rows {i} and {k} are swapped"

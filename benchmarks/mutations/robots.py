@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 from numpy.random import Generator
 
 from mutations.amounts import changed, cut_short
-from mutations.damage import Mutators, NothingToDamage
+from mutations.damage import Mutators, NotApplicableError
 
 ElementTree.register_namespace("xacro", "http://www.ros.org/wiki/xacro")
 Element = ElementTree.Element
@@ -17,6 +17,10 @@ _LEAST = {"xyz": 3e-4, "rpy": 0.01, "pos": 3e-4}
 """Least change of an attribute, in m and rad: of a 0 there is no share."""
 _LEAST_INERTIA = 1e-7
 """In kg m², 2 % of the diagonal: products near 0 may be anything much smaller."""
+
+
+_UNREAD = frozenset({("visual", "name"), ("collision", "name")})
+"""Names that no other element refers to."""
 
 
 def _parsed(data: bytes) -> tuple[Element, list[Element]]:
@@ -35,7 +39,9 @@ def _named(element: Element) -> str:
 
 def _number(data: bytes, rng: Generator) -> tuple[bytes, str]:
     root, elements = _parsed(data)
-    values = [(e, k) for e in elements for k, v in e.attrib.items() if _NUMBER.fullmatch(v.split(" ")[0])]
+    values = [
+        (e, k) for e in elements for k, v in e.attrib.items() if _NUMBER.fullmatch(v.split(" ")[0])
+    ]
     element, key = values[int(rng.integers(len(values)))]
     words = element.attrib[key].split(" ")
     at = int(rng.integers(len(words)))
@@ -51,7 +57,12 @@ def _number(data: bytes, rng: Generator) -> tuple[bytes, str]:
 def _word(data: bytes, rng: Generator) -> tuple[bytes, str]:
     """Another word of the same attribute, or one with a letter more."""
     root, elements = _parsed(data)
-    words = [(e, k) for e in elements for k, v in e.attrib.items() if not _NUMBER.match(v)]
+    words = [
+        (e, k)
+        for e in elements
+        for k, v in e.attrib.items()
+        if not _NUMBER.match(v) and (e.tag, k) not in _UNREAD
+    ]
     element, key = words[int(rng.integers(len(words)))]
     others = sorted({e.attrib[k] for e, k in words if k == key} - {element.attrib[key]})
     before = _named(element)
@@ -71,14 +82,15 @@ def _removed(data: bytes, rng: Generator) -> tuple[bytes, str]:
 def _swapped(data: bytes, rng: Generator) -> tuple[bytes, str]:
     """The values of one attribute in two elements of one tag in each other's place."""
     root, elements = _parsed(data)
-    values = [(e, k) for e in elements for k in e.attrib]
+    values = [(e, k) for e in elements for k in e.attrib if (e.tag, k) not in _UNREAD]
     element, key = values[int(rng.integers(len(values)))]
     others = [
-        e for e, k in values
+        e
+        for e, k in values
         if k == key and e.tag == element.tag and e.attrib[k] != element.attrib[k]
     ]
     if not others:
-        raise NothingToDamage
+        raise NotApplicableError
     other = others[int(rng.integers(len(others)))]
     done = f"{key} of {_named(element)} and of {_named(other)} are swapped"
     element.attrib[key], other.attrib[key] = other.attrib[key], element.attrib[key]

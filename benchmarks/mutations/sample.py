@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.random import Generator, default_rng
 
-from mutations.damage import Mutant, NothingToDamage
+from mutations.damage import Mutant, NotApplicableError
 from mutations.formats import BY_SUFFIX, WHOLE, artefact, of_whole_file, suffix
 
 WHOLE_SHARE = 0.12
@@ -60,7 +60,7 @@ def made(out: Path, path: str, kind: str, seed: int) -> Mutant:
     """The mutant of that file, kind and seed.
 
     Raises:
-        NothingToDamage: if the place that the seed draws has nothing to damage.
+        NotApplicableError: if the place that the seed draws has nothing to damage.
     """
     rng = default_rng(seed)
     listed = path != MANIFEST
@@ -70,7 +70,7 @@ def made(out: Path, path: str, kind: str, seed: int) -> Mutant:
     old = (out / path).read_bytes()
     new, done = BY_SUFFIX[suffix(path)][kind](old, rng)
     if new == old:
-        raise NothingToDamage
+        raise NotApplicableError
     return Mutant(path, kind, seed, done, {path: new}, listed)
 
 
@@ -93,11 +93,11 @@ def drawn(out: Path, paths: Sequence[str], seed: int, number: int) -> Mutant:
         kind, own = _kind(path, rng), int(rng.integers(2**32))
         try:
             mutant = made(out, path, kind, own)
-        except NothingToDamage:
+        except NotApplicableError:
             continue
         if not any(e.is_like(mutant) for e in equivalents()):
             return mutant
-    raise NothingToDamage(name)
+    raise NotApplicableError(name)
 
 
 def _kind(path: str, rng: Generator) -> str:

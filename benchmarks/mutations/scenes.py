@@ -10,7 +10,7 @@ from numpy.random import Generator
 from PIL import Image
 
 from mutations.amounts import cut_short, distance_mm, factor
-from mutations.damage import Mutators, NothingToDamage
+from mutations.damage import Mutators, NotApplicableError
 from mutations.meshes import AXES
 
 _PREFIX = 20  # header of the file and of its first chunk
@@ -31,8 +31,10 @@ def _written(scene: dict[str, Any], body: bytearray) -> bytes:
     return b"".join(
         (
             struct.pack("<4sII", b"glTF", 2, whole),
-            struct.pack("<I4s", len(text), b"JSON"), text,
-            struct.pack("<I4s", len(body), b"BIN\0"), bytes(body),
+            struct.pack("<I4s", len(text), b"JSON"),
+            text,
+            struct.pack("<I4s", len(body), b"BIN\0"),
+            bytes(body),
         )
     )
 
@@ -53,7 +55,7 @@ def _vertices(data: bytes, rng: Generator) -> tuple[bytes, str]:
     else:
         by = factor(rng)
         if np.ptp(corners[:, axis]) * abs(by - 1) < 0.2 * _MM:
-            raise NothingToDamage
+            raise NotApplicableError
         corners[:, axis] *= by
         done = f"scaled by {by:g} in {AXES[axis]}"
     body[start : start + corners.nbytes] = corners.tobytes()
@@ -114,7 +116,7 @@ def _saved(picture: Image.Image, before: Image.Image, done: str) -> tuple[bytes,
     if picture.size == before.size:
         apart = np.abs(np.int16(np.asarray(picture)) - np.int16(np.asarray(before))).max(axis=2)
         if np.count_nonzero(apart > _SEEN) < _LEAST_PIXELS:
-            raise NothingToDamage
+            raise NotApplicableError
     target = io.BytesIO()
     picture.save(target, "PNG")
     return target.getvalue(), done
@@ -123,7 +125,9 @@ def _saved(picture: Image.Image, before: Image.Image, done: str) -> tuple[bytes,
 def _flipped(data: bytes, rng: Generator) -> tuple[bytes, str]:
     before = _picture(data)
     hows = (
-        Image.Transpose.FLIP_LEFT_RIGHT, Image.Transpose.FLIP_TOP_BOTTOM, Image.Transpose.ROTATE_180,
+        Image.Transpose.FLIP_LEFT_RIGHT,
+        Image.Transpose.FLIP_TOP_BOTTOM,
+        Image.Transpose.ROTATE_180,
     )
     how = hows[int(rng.integers(3))]
     return _saved(before.transpose(how), before, how.name.lower().replace("_", " "))
@@ -135,7 +139,9 @@ def _painted(data: bytes, rng: Generator) -> tuple[bytes, str]:
     pixels = np.asarray(before).copy()
     high, wide = (max(int(s * rng.uniform(0.05, 0.3)), 8) for s in pixels.shape[:2])
     top, left = (int(rng.integers(s - n)) for s, n in zip(pixels.shape, (high, wide), strict=False))
-    pixels[top : top + high, left : left + wide] = 255 - pixels[top : top + high, left : left + wide]
+    pixels[top : top + high, left : left + wide] = (
+        255 - pixels[top : top + high, left : left + wide]
+    )
     done = f"{wide} x {high} pixels at {left}, {top} in the opposite colour"
     return _saved(Image.fromarray(pixels), before, done)
 
@@ -143,9 +149,14 @@ def _painted(data: bytes, rng: Generator) -> tuple[bytes, str]:
 def _shifted(data: bytes, rng: Generator) -> tuple[bytes, str]:
     before = _picture(data)
     by = max(int(before.width * rng.uniform(0.02, 0.2)), 4)
-    return _saved(Image.fromarray(np.roll(np.asarray(before), by, axis=1)), before, f"shifted by {by}")
+    return _saved(
+        Image.fromarray(np.roll(np.asarray(before), by, axis=1)), before, f"shifted by {by}"
+    )
 
 
 PNG: Mutators = {
-    "mirror": _flipped, "paint over": _painted, "move": _shifted, "truncate": cut_short,
+    "mirror": _flipped,
+    "paint over": _painted,
+    "move": _shifted,
+    "truncate": cut_short,
 }

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.random import Generator
 
 from mutations.amounts import distance_mm, factor, replaced
-from mutations.damage import Mutator, Mutators, NothingToDamage
+from mutations.damage import Mutator, Mutators, NotApplicableError
 from mutations.meshes import DAMAGES, Mesh, MeshDamage
 
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("spare", "<u2")])
@@ -57,9 +57,9 @@ STL: Mutators = {kind: of_stl(damage) for kind, damage in DAMAGES.items()} | {
 }
 
 
-def in_zip(member: str, change: Callable[[bytes], tuple[bytes, str]], data: bytes) -> (
-    tuple[bytes, str]
-):
+def in_zip(
+    member: str, change: Callable[[bytes], tuple[bytes, str]], data: bytes
+) -> tuple[bytes, str]:
     """A zip with one member changed; order, dates and compression stay."""
     target, done = io.BytesIO(), ""
     with zipfile.ZipFile(io.BytesIO(data)) as old, zipfile.ZipFile(target, "w") as new:
@@ -88,7 +88,9 @@ def in_model(damage: MeshDamage) -> Mutator:
         corners = np.array(_VERTEX.findall(text), dtype=np.float64)
         faces = np.array(_TRIANGLE.findall(text), dtype=np.int64)
         mesh, done = damage(Mesh(corners, faces), rng)
-        vertices = "\n".join(f'<vertex x="{x:.5f}" y="{y:.5f}" z="{z:.5f}"/>' for x, y, z in mesh.corners)
+        vertices = "\n".join(
+            f'<vertex x="{x:.5f}" y="{y:.5f}" z="{z:.5f}"/>' for x, y, z in mesh.corners
+        )
         triangles = "\n".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in mesh.faces)
         for tag, body in (("vertices", vertices), ("triangles", triangles)):
             start, end = text.index(f"<{tag}>") + len(tag) + 2, text.index(f"</{tag}>")
@@ -131,7 +133,7 @@ def _emptied(data: bytes, rng: Generator) -> tuple[bytes, str]:
 def _item(data: bytes, items: str) -> bytes:
     text = data.decode()
     if '<item objectid="1"/>' not in text:
-        raise NothingToDamage
+        raise NotApplicableError
     return text.replace('<item objectid="1"/>', items).encode()
 
 

@@ -11,7 +11,6 @@ from mutations.amounts import (
     one_of,
     put,
     removed,
-    replaced,
     spans,
     swapped,
     word_changed,
@@ -48,14 +47,16 @@ SOURCE: Mutators = {
 
 # What a reader of the note sees; links and pictures are text too.
 _PARAGRAPH = re.compile(r"(?:^.*\S.*\n)+", re.MULTILINE)
-_UNITS = replaced((" mm", " cm"), (" g", " kg"), (" min", " h"), (" °C", " °F"), (" V", " mV"))
+_UNIT = re.compile(r"(?<=\d )(?:mm|g|min|h|V|mA|N|ml)\b|(?<=\d )°C")
+_NUMBERING = re.compile(r"^\s*\d+\.", re.MULTILINE)
+"""Markdown counts the items of a list itself."""
 MARKDOWN: Mutators = {
-    "number": number_changed(),
+    "number": number_changed(skip=_NUMBERING),
     "word": word_changed(),
     "remove": removed(_PARAGRAPH),
     "duplicate": doubled(_PARAGRAPH),
     "swap paragraphs": swapped(_PARAGRAPH),
-    "unit": _UNITS,
+    "unit": word_changed(_UNIT),
     "truncate": cut_short,
 }
 
@@ -99,6 +100,6 @@ HTML: Mutators = {
     "duplicate": _block_doubled,
     "swap paragraphs": _blocks_swapped,
     "remove a picture": removed(_IMAGE),
-    "unit": _UNITS,
+    "unit": word_changed(_UNIT, _TAG),
     "truncate": cut_short,
 }

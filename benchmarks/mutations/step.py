@@ -6,7 +6,7 @@ from collections import Counter
 from numpy.random import Generator
 
 from mutations.amounts import cut_short, distance_mm, factor, replaced
-from mutations.damage import Mutators, NothingToDamage
+from mutations.damage import Mutators, NotApplicableError
 from mutations.meshes import AXES
 
 # Only points in space: one of two numbers is a point in the plane of a surface's parameters, which
@@ -14,16 +14,19 @@ from mutations.meshes import AXES
 _POINT = re.compile(r"(CARTESIAN_POINT\(\s*'[^']*',\s*\()([^(),]+),([^(),]+),([^(),]+)(\)\s*\))")
 _RADIUS = re.compile(r"((?:CIRCLE|CYLINDRICAL_SURFACE)\(\s*'[^']*',\s*#\d+,\s*)([^(),]+)(\))")
 _SHELL = re.compile(r"CLOSED_SHELL\(\s*'[^']*',\s*\(([^)]*)\)")
-_LEAST_POINTS = 4
+_NUMBERED = re.compile(rf"(#\d+) = {_POINT.pattern}")
+_VERTEX = re.compile(r"VERTEX_POINT\(\s*'[^']*',\s*(#\d+)\)")
+_LEAST_POINTS = 3
+"""Corners of a face. The points of planes and lines alone may slide along them, unseen."""
 
 
 def _number(value: float) -> str:
-    text = f"{value:.9f}".rstrip("0")
-    return text
+    return f"{value:.9f}".rstrip("0")
 
 
-def _with_points(text: str, axis: int, change: "dict[float, float] | None", by: float = 0.0,
-                 scale: float = 1.0) -> str:
+def _with_points(
+    text: str, axis: int, change: "dict[float, float] | None", by: float = 0.0, scale: float = 1.0
+) -> str:
     """The text with one coordinate of its points changed."""
 
     def point(match: re.Match[str]) -> str:
@@ -55,10 +58,13 @@ def _scaled(data: bytes, rng: Generator) -> tuple[bytes, str]:
 def _face_moved(data: bytes, rng: Generator) -> tuple[bytes, str]:
     """All points in one plane across an axis, as of a face in another place."""
     text, axis = data.decode(), int(rng.integers(3))
-    heights = Counter(round(float(m[2 + axis]), 6) for m in _POINT.finditer(text))
+    corners = set(_VERTEX.findall(text))
+    heights = Counter(
+        round(float(m[3 + axis]), 6) for m in _NUMBERED.finditer(text) if m[1] in corners
+    )
     often = sorted(v for v, count in heights.items() if count >= _LEAST_POINTS)
     if not often:
-        raise NothingToDamage
+        raise NotApplicableError
     old, by = often[int(rng.integers(len(often)))], distance_mm(rng)
     new = _with_points(text, axis, {old: old + by})
     return new.encode(), f"{heights[old]} points at {AXES[axis]} = {old:g} moved by {by:g} mm"
@@ -69,7 +75,7 @@ def _radius(data: bytes, rng: Generator) -> tuple[bytes, str]:
     text = data.decode()
     found = sorted({m[2] for m in _RADIUS.finditer(text)})
     if not found:
-        raise NothingToDamage
+        raise NotApplicableError
     old = found[int(rng.integers(len(found)))]
     new = abs(float(old) + distance_mm(rng)) or 1.0
     text = _RADIUS.sub(lambda m: m[1] + _number(new) + m[3] if m[2] == old else m[0], text)
@@ -81,7 +87,7 @@ def _face_removed(data: bytes, rng: Generator) -> tuple[bytes, str]:
     text = data.decode()
     shells = list(_SHELL.finditer(text))
     if not shells:
-        raise NothingToDamage
+        raise NotApplicableError
     shell = shells[int(rng.integers(len(shells)))]
     faces = re.findall(r"#\d+", shell[1])
     gone = faces.pop(int(rng.integers(len(faces))))
