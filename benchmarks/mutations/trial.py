@@ -23,6 +23,8 @@ from mutations.formats import artefact
 from mutations.sample import MANIFEST
 
 MOST_SECONDS = 120
+OF_ONE_BOARD = ("board", "orders")
+"""Modules that take seconds, and can measure one board alone."""
 logger = logging.getLogger(__name__)
 
 
@@ -110,10 +112,11 @@ def _checked(out: Path, changed: list[str]) -> tuple[list[str], str]:
                 design = read_design(out / "design.json")
             except OutputError as error:
                 return [f"design: {error!s:.80}"], ""
-            for name in {*modules_reading(changed), "manifest"}:
+            for name in sorted({*modules_reading(changed), "manifest"}):
                 failed += _failed(name, out, design, board_of(changed))
     except Exception as error:  # noqa: BLE001
-        frame = traceback.extract_tb(error.__traceback__)[-1]
+        # A generator that raises StopIteration says where only in the cause.
+        frame = traceback.extract_tb((error.__cause__ or error).__traceback__)[-1]
         place = f"{Path(frame.filename).name}:{frame.lineno} {frame.name}"
         return failed, f"{type(error).__name__}: {error!s:.200} ({place})"
     return sorted(set(failed)), ""
@@ -121,7 +124,7 @@ def _checked(out: Path, changed: list[str]) -> tuple[list[str], str]:
 
 def _failed(name: str, out: Path, design: Design, board: str) -> list[str]:
     module = import_module(f"lumitip_fab.checks.{name}")
-    if board and hasattr(module, "measure_board"):
+    if board and name in OF_ONE_BOARD:
         found = module.measure_board(out, design, board)
     else:
         found = module.measure(out, design)
