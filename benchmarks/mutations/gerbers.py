@@ -240,7 +240,7 @@ def _member_added(members: dict[str, bytes], rng: Generator) -> str:
 ORDER: Mutators = {
     "file": _in_a_member,
     "remove": _rezipped(_member_removed),
-    "swap": _rezipped(_members_swapped),
+    "swap files": _rezipped(_members_swapped),
     "duplicate": _rezipped(_member_added),
     "truncate": cut_short,
 }

@@ -21,9 +21,9 @@ from mutations.amounts import (
 from mutations.damage import Mutators, NotApplicableError
 
 Place = tuple[str | int, ...]
-_UNREAD = re.compile(r"(^|\.)(\$schema|comment|description|tasks|task|\w*color)(\.|$)")
-"""Comments, colours, and what the next build remembers in the manifest of its own steps: at worst
-it runs one once more."""
+_UNREAD = re.compile(r"(^|\.)(\$schema|comment|tasks?|\w*color|wire_width|bus_width)(\.|$)")
+"""Comments, looks of a schematic, and what the next build remembers in the manifest of its own
+steps: at worst it runs one once more."""
 _HASH = re.compile(r"^[0-9a-f]{64}$")
 
 
@@ -51,24 +51,22 @@ def _holder(record: Any, place: Place) -> Any:
     return record
 
 
-def _read(data: bytes) -> tuple[Any, list[tuple[Place, Any]]]:
-    """A record and its leaves, but for those that nobody reads.
+def _matters(record: Any, place: Place) -> bool:
+    """Whether anybody reads what is in a place.
 
     In the manifest a file without a frame has a matrix that places nothing.
     """
+    if _UNREAD.search(_named(place)):
+        return False
+    if place[:1] == ("files",) and place[2:3] == ("to_sensor",):
+        return bool(record["files"][place[1]].get("frame"))
+    return True
+
+
+def _read(data: bytes) -> tuple[Any, list[tuple[Place, Any]]]:
+    """A record, and its numbers, texts and switches that matter."""
     record = json.loads(data)
-    frameless = {
-        ("files", path, "to_sensor")
-        for path, entry in _files(record).items()
-        if not entry.get("frame")
-    }
-    leaves = (pair for pair in _leaves(record) if not _UNREAD.search(_named(pair[0])))
-    return record, [(p, v) for p, v in leaves if p[:3] not in frameless]
-
-
-def _files(record: Any) -> dict[str, Any]:
-    files = record.get("files") if isinstance(record, dict) else None
-    return files if isinstance(files, dict) else {}
+    return record, [(p, v) for p, v in _leaves(record) if _matters(record, p)]
 
 
 def _drawn(found: list[tuple[Place, Any]], rng: Generator) -> tuple[Place, Any]:
@@ -128,11 +126,11 @@ def _json_switch(data: bytes, rng: Generator) -> tuple[bytes, str]:
 
 def _json_removed(data: bytes, rng: Generator) -> tuple[bytes, str]:
     record = json.loads(data)
-    groups = [(p, g) for p, g in _groups(record) if not _UNREAD.search(_named(p))]
+    groups = [(p, g) for p, g in _groups(record) if _matters(record, p)]
     place, group = _drawn(groups, rng)
     keys = list(group) if isinstance(group, dict) else [*range(len(group))]
     key = keys[int(rng.integers(len(keys)))]
-    if _UNREAD.search(_named((*place, key))):
+    if not _matters(record, (*place, key)):
         raise NotApplicableError
     del group[key]
     return _written(record, data), f"{_named((*place, key))} is gone"
@@ -144,7 +142,7 @@ def _json_swapped(data: bytes, rng: Generator) -> tuple[bytes, str]:
     lists = [
         (p, g)
         for p, g in _groups(record)
-        if isinstance(g, list) and len({str(v) for v in g}) > 1 and not _UNREAD.search(_named(p))
+        if isinstance(g, list) and len({str(v) for v in g}) > 1 and _matters(record, p)
     ]
     place, group = _drawn(lists, rng)
     pairs = [(i, j) for i in range(len(group)) for j in range(i) if group[i] != group[j]]
