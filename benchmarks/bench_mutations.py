@@ -65,6 +65,8 @@ def run(out: Path, count: int, seed: int, only: str, jobs: int) -> list[Trial]:
     # New processes, so that none has the locks of another one's threads.
     context = multiprocessing.get_context("spawn")
     paths = files_of(out, only)
+    if not paths:
+        sys.exit(f"no file of the outputs matches {only!r}")
     tasks = [(paths, seed, number) for number in range(count)]
     with (
         tempfile.TemporaryDirectory(prefix="mutations-") as folder,

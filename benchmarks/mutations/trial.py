@@ -115,11 +115,16 @@ def _checked(out: Path, changed: list[str]) -> tuple[list[str], str]:
             for name in sorted({*modules_reading(changed), "manifest"}):
                 failed += _failed(name, out, design, board_of(changed))
     except Exception as error:  # noqa: BLE001
-        # A generator that raises StopIteration says where only in the cause.
-        frame = traceback.extract_tb((error.__cause__ or error).__traceback__)[-1]
-        place = f"{Path(frame.filename).name}:{frame.lineno} {frame.name}"
-        return failed, f"{type(error).__name__}: {error!s:.200} ({place})"
+        return failed, f"{type(error).__name__}: {error!s:.200} ({_place(error)})"
     return sorted(set(failed)), ""
+
+
+def _place(error: Exception) -> str:
+    """The last line of the checks that an exception passed."""
+    # A generator that raises StopIteration says where only in the cause.
+    frames = traceback.extract_tb((error.__cause__ or error).__traceback__)
+    own = [f for f in frames if "lumitip_fab" in Path(f.filename).parts] or frames
+    return f"{Path(own[-1].filename).name}:{own[-1].lineno} {own[-1].name}"
 
 
 def _failed(name: str, out: Path, design: Design, board: str) -> list[str]:
