@@ -15,8 +15,8 @@ _IDENTITY = frozenset(
     ("tstamp", "uuid", "id", "version", "generator", "path", "date", "options", "descr")
 ) | {"sheet_instances", "symbol_instances"}
 """Nodes that KiCad makes anew or ignores when it saves a file."""
-_LOOKS = frozenset({"effects", "font", "stroke", "color", "paper", "hide", "fill"})
-"""Size and colour of texts and lines in a drawing: no board differs."""
+_LOOKS = frozenset({"effects", "font", "stroke", "color", "paper", "fill", "grid_origin"})
+"""Size and colour of texts and lines in a drawing, and where its grid begins: no board differs."""
 _DENSE = frozenset({"filled_polygon"})
 """Poured copper: of its hundreds of corners one makes a spike thinner than a fab can etch."""
 _PLACED = frozenset(
