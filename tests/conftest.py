@@ -27,6 +27,8 @@ LONGEST = (
     "documents/test_tutorials.py",
     "fab/test_build.py",
     "fab/test_slice.py",
+    "mutations/test_mutators.py",
+    "mutations/test_trial.py",
 )
 """Test files that take longest, in this order before all others: a worker has a file to itself, and
 none is to begin a long one when the rest is done."""

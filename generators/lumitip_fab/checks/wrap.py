@@ -147,6 +147,8 @@ def _tilt(mould: Any, printed: Any) -> tuple[float, float]:
     """Angle of a mould that lies on its foot at the tip and on the prop's inner edge, and the y of
     that foot. Both files have the same x and y."""
     foot = mould.vertices[mould.vertices[:, 2] < _ON_BED_MM]
+    if not len(foot):
+        raise OutputError("the mould does not stand on its bed")
     pivot = float(foot[:, 1].min())
     return math.atan2(_plate_mm(printed), float(printed.bounds[0, 1]) - pivot), pivot
 
