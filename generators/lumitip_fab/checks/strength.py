@@ -34,8 +34,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         try:
             found = finger_loads(outputs, design, finger)
             seats = list(measure_seats(outputs, design, finger))
-        except OutputError as error:
-            yield unreadable("strength.readable", subject, str(error))
+        except (OutputError, ArithmeticError, ValueError) as error:
+            yield unreadable("strength.readable", subject, f"cannot be measured: {error!s:.200}")
             continue
         yield from _limits(subject, found, design)
         yield from measure_orientation(outputs, design, finger, found)

@@ -91,11 +91,11 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             try:
                 mould = solids.read_mesh(outputs / subject)
                 backing = solids.read_mesh(outputs / f"backing/{finger.name}_backing.stl")
+                tilt, pivot = _tilt(mould, printed)
             except OutputError as error:
                 yield unreadable("wrap.readable", subject, str(error))
                 continue
             to_sensor = backing_bed_to_sensor(design.mount, design.stack)
-            tilt, pivot = _tilt(mould, printed)
             lying = solids.moved(backing, to_sensor)
             whole = Tilted("wrap", subject, mould, tilt, pivot, lying, prop, design, finger)
             yield from measured(MEASURES, whole)
@@ -145,7 +145,11 @@ def _plate_mm(printed: Any) -> float:
 
 def _tilt(mould: Any, printed: Any) -> tuple[float, float]:
     """Angle of a mould that lies on its foot at the tip and on the prop's inner edge, and the y of
-    that foot. Both files have the same x and y."""
+    that foot. Both files have the same x and y.
+
+    Raises:
+        OutputError: if no corner of the mould lies on its bed.
+    """
     foot = mould.vertices[mould.vertices[:, 2] < _ON_BED_MM]
     if not len(foot):
         raise OutputError("the mould does not stand on its bed")
