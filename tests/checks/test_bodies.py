@@ -139,6 +139,7 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
         step_changed("MANIFOLD_SOLID_BREP", "SHELL_BASED_SURFACE_MODEL"),
         {"solids", "surface", "volume"},
     ),
+    "STEP without its end": (step_changed(r"ENDSEC;\s*END-ISO-10303-21;\s*$", ""), {"surface"}),
     "STEP cut short": (lambda folder: cut_short(folder / STEP, 20000), {"surface"}),
     "STEP empty": (lambda folder: (folder / STEP).write_text(""), {"surface"}),
     "STL gone": (lambda folder: (folder / STL).unlink(), {"stl"}),
@@ -168,6 +169,32 @@ def test_a_damaged_file(case: str, parts: Path) -> None:
 
 def test_undamaged_parts_pass(outputs: Path) -> None:
     assert len(passing(outputs, "bodies", lambda subject: subject.endswith(".step"))) == 3
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "wanted"),
+    [
+        (r"((?:CIRCLE|CYLINDRICAL_SURFACE)\('',#\d+,)1\.5\)", r"\g<1>1.06)", {"scene"}),
+        (r"(CARTESIAN_POINT\('',\()(-?[\d.]+)", r"\g<1>1\g<2>", {"solids"}),
+        (r"END-ISO-10303-21;", "", {"solids"}),
+    ],
+)
+def test_a_damaged_step_file_that_no_stl_stands_for(
+    old: str, new: str, wanted: set[str], outputs: Path, tmp_path: Path
+) -> None:
+    folder = excerpt(outputs, tmp_path / "alone", "manifest.json", "assembly", "boards/models")
+    record = json.loads((folder / manifest.NAME).read_text())
+    kept = ("assembly/assembly", "boards/models/")
+    record["files"] = {p: e for p, e in record["files"].items() if p.startswith(kept)}
+    (folder / manifest.NAME).write_text(json.dumps(record))
+    assert failing(folder, "bodies") == set()
+    path = folder / "assembly/assembly.step"
+    text = path.read_text(encoding="latin-1")
+    changed = re.sub(old, new, text)
+    if changed == text:
+        pytest.fail(f"{old} is not in it")
+    path.write_text(changed, encoding="latin-1")
+    assert failing(folder, "bodies") & wanted
 
 
 def test_one_spoilt_step_file_does_not_hide_the_others(outputs: Path, tmp_path: Path) -> None:

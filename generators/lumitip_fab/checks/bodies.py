@@ -1,5 +1,6 @@
 """STL, 3MF and STEP of a part are one body: whichever is printed or opened, it is the same."""
 
+import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -15,9 +16,10 @@ from lumitip_fab.design.frames import applied
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline import manifest
 
-READS = ("*.stl", "*.3mf", "*.step", "manifest.json")
+READS = ("*.stl", "*.3mf", "*.step", "assembly/assembly.glb", "manifest.json")
 AGREE_MM = 0.05
 VOLUME = 0.002  # of chords on curved faces
+_SCENE = 0.0002  # the same: a hole of another width is seen in the volume of all bodies
 Files = Mapping[str, manifest.Entry]
 Shapes = Mapping[Path, StepShape | OutputError]
 
@@ -29,11 +31,39 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:  # noqa: AR
         yield unreadable("bodies.stl", manifest.NAME, "lists no file")
     stems = [path.removesuffix(".stl") for path in sorted(files) if path.endswith(".stl")]
     parts = {s: [f"{s}{end}" for end in (".3mf", ".step") if f"{s}{end}" in files] for s in stems}
-    steps = [outputs / path for paths in parts.values() for path in paths if path.endswith("step")]
-    shapes = step_shapes(steps)
+    steps = [path for path in sorted(files) if path.endswith(".step")]
+    shapes = step_shapes([outputs / path for path in steps])
     for part, paths in parts.items():
         if paths:
             yield from _part(outputs, f"{part}.stl", paths, files, shapes)
+    for path in steps:
+        if path.removesuffix(".step") not in stems:
+            yield from _alone(outputs, path, files, shapes[outputs / path])
+
+
+def _alone(
+    outputs: Path, path: str, files: Files, shape: StepShape | OutputError
+) -> Iterator[Measurement]:
+    """A STEP file that no STL stands for: whole, and of one size with the scene beside it."""
+    of, scene = Subject("bodies", path), path.replace(".step", ".glb")
+    if isinstance(shape, OutputError):
+        yield unreadable("bodies.solids", path, str(shape))
+        return
+    yield of.figure("solids", shape.solids, 1, math.inf, "solids")
+    if scene not in files:
+        return
+    try:
+        mesh = read_mesh(outputs / scene)
+        seen = (np.asarray(mesh.triangles, dtype=np.float64), files[scene])
+        ours, theirs = _in_one_frame(seen, (shape.triangles, files[path]))
+    except OutputError as error:
+        yield unreadable("bodies.scene", path, str(error))
+        return
+    boxes = [np.array([s.min(axis=(0, 1)), s.max(axis=(0, 1))]) for s in (ours, theirs)]
+    off = float(np.abs(boxes[0] - boxes[1]).max())
+    yield of.figure("scene", off, 0.0, AGREE_MM, note=f"off the box round {scene}", at="box")
+    share = volume_mm3(theirs) / volume_mm3(ours)
+    yield of.near("scene", share, 1.0, _SCENE, f"of the volume of {scene}", unit="", at="volume")
 
 
 def _part(

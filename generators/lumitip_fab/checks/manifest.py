@@ -32,7 +32,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         yield unreadable("manifest.files", _FILE, "missing, or not of this version: build again")
         yield unreadable("manifest.frames", _FILE, "lists no file")
         return
-    changed = [p for p, e in recorded.files.items() if manifest.sha256_of(outputs / p) != e.sha256]
+    changed = [p for p, e in recorded.files.items() if not _as_listed(outputs / p, e)]
     note = ", ".join(changed[:3]) or f"of {len(recorded.files)}"
     yield Measurement("manifest.files", _FILE, len(changed), 0, 0, "missing or changed", note)
     yield count("manifest.strays", ".", sorted(_strays(outputs, recorded.files)), "files")
@@ -44,6 +44,10 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         placed = path.startswith(("backing/", "interface/", "mould/", "mask/", "gauge/"))
         if path.endswith(".stl") and placed and entry.frame:
             yield _frame(outputs, path, np.array(entry.to_sensor), design)
+
+
+def _as_listed(path: Path, entry: manifest.Entry) -> bool:
+    return manifest.sha256_of(path) == entry.sha256 and path.stat().st_size == entry.bytes
 
 
 def _motion(rows: object) -> bool:

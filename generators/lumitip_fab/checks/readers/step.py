@@ -20,6 +20,7 @@ from lumitip_fab.errors import OutputError
 
 Vectors = NDArray[np.float64]  # not of `solids`: its libraries are not needed here
 _CHORD_MM, _ANGLE_RAD = 0.01, 0.2
+_END = b"END-ISO-10303-21;"
 _LARGEST_MM3 = 1e9  # chords of 0.01 mm on a part in metres would take hours
 _LONGEST_S = 300  # a damaged file may keep the kernel for ever
 
@@ -95,6 +96,8 @@ def _read(path: Path) -> StepShape:
 
     reader = STEPControl_Reader()
     try:
+        if not path.read_bytes().rstrip().endswith(_END):
+            raise OutputError("it is cut short")
         if reader.ReadFile(str(path)) != IFSelect_RetDone or not reader.TransferRoots():
             raise OutputError("no STEP file with a shape in it")
         shape = reader.OneShape()
@@ -108,7 +111,7 @@ def _read(path: Path) -> StepShape:
             solids += 1
             explorer.Next()
         return StepShape(_triangles(shape), mass.Mass(), solids)
-    except MALFORMED as error:  # whatever the kernel stumbles over
+    except (OSError, *MALFORMED) as error:  # whatever the kernel stumbles over
         raise OutputError(f"{error!r:.200}") from error
 
 
