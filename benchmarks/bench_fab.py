@@ -96,7 +96,7 @@ def one_stage(stage: str, cells: int) -> None:
             begun = time.perf_counter()
             masks = [a for finger in design.fingers for a in mask_files(design, finger)]
             seconds = time.perf_counter() - begun
-            for artefact in (*masks, *documents(config, design)):
+            for artefact in (*masks, *documents(config, design, out)):
                 path = out / artefact.path
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_bytes(artefact.data)

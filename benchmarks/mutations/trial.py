@@ -114,12 +114,12 @@ def _checked(out: Path, changed: list[str]) -> tuple[list[str], str]:
                 return [f"design: {error!s:.80}"], ""
             for name in sorted({*modules_reading(changed), "manifest"}):
                 failed += _failed(name, out, design, board_of(changed))
-    except Exception as error:  # noqa: BLE001
+    except (Exception, TooLongError) as error:  # noqa: BLE001
         return failed, f"{type(error).__name__}: {error!s:.200} ({_place(error)})"
     return sorted(set(failed)), ""
 
 
-def _place(error: Exception) -> str:
+def _place(error: BaseException) -> str:
     """The last line of the checks that an exception passed."""
     # A generator that raises StopIteration says where only in the cause.
     frames = traceback.extract_tb((error.__cause__ or error).__traceback__)
@@ -144,12 +144,16 @@ def board_of(changed: list[str]) -> str:
     return "" if boards or board == "models" else board
 
 
+class TooLongError(BaseException):
+    """A check does not end. Readers take whatever is an `Exception` for a damaged file."""
+
+
 @contextmanager
 def _in_time() -> Iterator[None]:
     """Ends a check that does not end by itself with an exception."""
 
     def stop(_signal: int, _frame: FrameType | None) -> None:
-        raise TimeoutError(f"longer than {MOST_SECONDS} s")
+        raise TooLongError(f"longer than {MOST_SECONDS} s")
 
     before = signal.signal(signal.SIGALRM, stop)
     signal.alarm(MOST_SECONDS)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from damages import cut_short, excerpt, failing, passing, remove_packages, swap
 from lumitip_fab.checks.readers.step import step_shapes
@@ -102,6 +103,40 @@ def step_moved(folder: Path) -> None:
     (folder / STEP).write_text(moved, encoding="ascii")
 
 
+def second_model(folder: Path) -> None:
+    with zipfile.ZipFile(folder / THREE_MF, "a") as package:
+        package.writestr("3D/other.model", "<model/>")
+
+
+def not_written(path: str) -> Damage:
+    """A file that is neither there nor in the manifest."""
+
+    def damage(folder: Path) -> None:
+        record = json.loads((folder / manifest.NAME).read_text())
+        del record["files"][path]
+        (folder / manifest.NAME).write_text(json.dumps(record))
+        (folder / path).unlink()
+
+    return damage
+
+
+def in_manifest(**values: object) -> Damage:
+    """Other values for the STEP file in the manifest."""
+
+    def damage(folder: Path) -> None:
+        record = json.loads((folder / manifest.NAME).read_text())
+        record["files"][STEP].update(values)
+        (folder / manifest.NAME).write_text(json.dumps(record))
+
+    return damage
+
+
+def flat(folder: Path) -> None:
+    mesh = trimesh.load(folder / STL, force="mesh")
+    mesh.vertices[:, 2] = 0.0
+    mesh.export(folder / STL)
+
+
 DAMAGES: dict[str, tuple[Damage, set[str]]] = {
     "3MF in inches": (model("millimeter", "inch"), {"surface"}),
     "3MF shifted": (
@@ -142,6 +177,18 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
     "STEP without its end": (step_changed(r"ENDSEC;\s*END-ISO-10303-21;\s*$", ""), {"surface"}),
     "STEP cut short": (lambda folder: cut_short(folder / STEP, 20000), {"surface"}),
     "STEP empty": (lambda folder: (folder / STEP).write_text(""), {"surface"}),
+    "3MF with a second model": (second_model, {"surface"}),
+    "3MF not written": (not_written(THREE_MF), {"surface"}),
+    "STEP not written": (not_written(STEP), {"surface"}),
+    "STL not written": (not_written(STL), {"stl"}),
+    "STL flat": (flat, {"surface", "solids", "volume"}),
+    "matrix ragged": (in_manifest(to_sensor=[[1.0], [2.0, 3.0]]), {"surface"}),
+    "matrix not a number": (in_manifest(to_sensor=[[float("nan")] * 4] * 4), {"surface"}),
+    "matrix of another part": (
+        in_manifest(to_sensor=np.diag([1.0, -1.0, 1.0, 1.0]).tolist()),
+        {"surface"},
+    ),
+    "frame": (in_manifest(frame="tool"), {"surface"}),
     "STL gone": (lambda folder: (folder / STL).unlink(), {"stl"}),
 }
 

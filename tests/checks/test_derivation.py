@@ -85,3 +85,27 @@ def test_a_catalogue_of_the_users_own_goes_with_the_outputs(
     assert failed(out) == []
     (out / "parts" / "leds.toml").unlink()
     assert [m.check for m in failed(out)] == ["derivation.design"]
+
+
+def test_a_catalogue_in_the_output_folder_is_not_an_output(
+    design_dir: Path, tmp_path: Path
+) -> None:
+    """Outputs beside the parameter file: the user's own catalogue is neither listed nor removed."""
+    (tmp_path / "parts").mkdir()
+    own = tmp_path / "parts" / "leds.toml"
+    text = (design_dir / "parts" / "leds.toml").read_text(encoding="utf-8")
+    own.write_text(text.replace(LED, "OURS"), encoding="utf-8")
+    ours, theirs = tmp_path / "ours.toml", design_dir / "presets" / "published.toml"
+    shutil.copy(theirs, ours)
+    edit(ours, 'led = "auto"', 'led = "OURS"')
+    build(ours, tmp_path, only=("firmware",))
+    assert failed(tmp_path) == []
+    build(theirs, tmp_path, only=("firmware",))
+    assert own.read_text(encoding="utf-8") != text
+
+
+def test_a_catalogue_around_the_outputs_is_not_theirs(copied: Path) -> None:
+    parts = copied.parent / "parts"
+    parts.mkdir()
+    (parts / "tapes.toml").write_text("half [")
+    assert failed(copied) == []

@@ -52,6 +52,16 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
     "model": (edited(DETECTOR, "PTRC2012X80N.step", "PTRC.step"), {"footprints"}),
     "on the back": (on_the_back, {"footprints"}),
     "the board's pad": (pad_moved_on_the_board, {"footprints"}),
+    "pad twice": (
+        edited(
+            DETECTOR,
+            '(pad "1"',
+            '(pad "2" smd rect (at 1.175 0 0) (size 1.1 1.25) (layers "F.Cu" "F.Paste" "F.Mask"))\n'
+            '(pad "1"',
+        ),
+        {"footprints"},
+    ),
+    "through holes": (edited(CHIP, "(attr smd)", "(attr through_hole)"), {"footprints"}),
     "footprint gone": (lambda folder: (folder / CHIP).unlink(), {"footprints"}),
     "footprint cut": (lambda folder: cut_short(folder / CHIP, 700), {"footprints"}),
     "pin": (edited(SYMBOLS, "(at 0 3.81 270)", "(at 0 2.54 270)"), {"symbols"}),
@@ -59,6 +69,15 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
     "symbol's name": (edited(SYMBOLS, '(symbol "R"', '(symbol "RR"'), {"symbols"}),
     "symbols gone": (lambda folder: (folder / SYMBOLS).unlink(), {"symbols", "tables"}),
     "clearance": (edited(PROJECT, '"min_clearance": 0.', '"min_clearance": 1.'), {"project"}),
+    "small clearance": (
+        edited(PROJECT, '"min_clearance": 0.2', '"min_clearance": 0.01'),
+        {"project"},
+    ),
+    "no edge": (
+        edited(PROJECT, '"min_copper_edge_clearance": 0.', '"min_copper_edge_clearance": -0.'),
+        {"project"},
+    ),
+    "ignored": (edited(PROJECT, '"error"', '"ignore"'), {"project"}),
     "track": (edited(PROJECT, '"min_track_width": 0.', '"min_track_width": -0.'), {"project"}),
     "severity": (edited(PROJECT, '"error"', '"errors"'), {"project"}),
     "net": (edited(PROJECT, '"pattern": "GND"', '"pattern": "EARTH"'), {"project"}),

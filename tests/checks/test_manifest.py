@@ -58,7 +58,9 @@ def test_a_matrix_that_puts_a_part_elsewhere(
         ("backing/backing.gcode", False),
         ("backing/photo.png", False),
         ("report.json", False),
-        ("flex/backing/emitter_backing.stl", False),
+        ("finger.toml", False),
+        ("mine/emitter_backing.stl", True),
+        ("mine/notes.md", False),
     ],
 )
 def test_a_file_of_no_build_that_could_be_sent(damaged: Path, name: str, seen: bool) -> None:
@@ -67,8 +69,44 @@ def test_a_file_of_no_build_that_could_be_sent(damaged: Path, name: str, seen: b
     assert failing(damaged) == ({"manifest.strays"} if seen else set())
 
 
+def test_other_outputs_inside_are_theirs(damaged: Path) -> None:
+    (damaged / "flex/backing").mkdir(parents=True)
+    (damaged / "flex/manifest.json").write_text("{}")
+    (damaged / "flex/backing/emitter_backing.stl").write_text("of another design")
+    assert failing(damaged) == set()
+
+
+def test_a_file_that_the_manifest_does_not_list(damaged: Path) -> None:
+    file = damaged / "manifest.json"
+    record = json.loads(file.read_text())
+    del record["files"]["holder/holder.stl"]
+    file.write_text(json.dumps(record))
+    assert failing(damaged) == {"manifest.strays"}
+
+
 @pytest.mark.parametrize(
-    ("row", "column", "value"), [(3, 3, 0.9), (3, 0, 1.0), (0, 1, 0.2), (0, 0, "1")]
+    ("path", "values"),
+    [
+        ("bom.csv", {"sha256": None}),
+        ("bom.csv", {"frame": 3}),
+        ("../bom.csv", {}),
+        ("/dev/zero", {}),
+        ("bom\0.csv", {}),
+    ],
+)
+def test_a_manifest_that_no_build_writes(
+    damaged: Path, path: str, values: dict[str, object]
+) -> None:
+    file = damaged / "manifest.json"
+    record = json.loads(file.read_text())
+    record["files"][path] = record["files"].pop("bom.csv") | values
+    file.write_text(json.dumps(record))
+    assert failing(damaged) == {"manifest.files", "manifest.frames"}
+
+
+@pytest.mark.parametrize(
+    ("row", "column", "value"),
+    [(0, 3, float("nan")), (3, 3, 0.9), (3, 0, 1.0), (0, 1, 0.2), (0, 0, "1")],
 )
 def test_a_matrix_that_is_no_motion(
     damaged: Path, row: int, column: int, value: float | str

@@ -27,6 +27,7 @@ EVERY = {
     "bulk",
     "macros",
     "slide",
+    "limits",
 }
 Damage = Callable[[Path], None]
 
@@ -116,6 +117,13 @@ DAMAGES: tuple[tuple[str, Damage, set[str]], ...] = (
     ),
     ("slides aside", edited(URDF, '<axis xyz="0 ', '<axis xyz="0.1 '), {"slide"}),
     ("short travel", edited(URDF, 'upper="0.039', 'upper="0.038', 2), {"open"}),
+    ("weaker", edited(URDF, 'effort="235"', 'effort="23"'), {"limits"}),
+    ("one faster", edited(URDF, 'velocity="0.15"', 'velocity="0.2"'), {"limits"}),
+    ("in mm/s", edited(URDF, 'velocity="0.15"', 'velocity="150"', 2), {"limits"}),
+    ("from the middle", edited(URDF, 'lower="0"', 'lower="-0.01"'), {"limits"}),
+    ("a macro's parent", edited(MACROS, 'link="${parent}"', 'link="world"'), {"macros"}),
+    ("a macro's joint", edited(MACROS, "receiver_mount", "receiver"), {"macros"}),
+    ("a macro's place", edited(MACROS, 'name="origin" />', 'name="place" />'), {"macros"}),
     (
         "mass in one file",
         edited(URDF, '<mass value="0.01', '<mass value="0.02'),

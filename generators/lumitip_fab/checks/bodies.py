@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from pathlib import Path
+from pathlib import Path, PurePath
 
 import numpy as np
 
@@ -17,6 +17,11 @@ from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline import manifest
 
 READS = ("*.stl", "*.3mf", "*.step", "assembly/assembly.glb", "manifest.json")
+_PRINTED = (".stl", ".3mf")
+_SHOWN = "robot/"
+"""Meshes for a robot's software, which nobody prints."""
+_CUT = "mask/"
+"""Flat pieces: nobody goes on with them in CAD."""
 AGREE_MM = 0.05
 VOLUME = 0.002  # of chords on curved faces
 _SCENE = 0.0002  # the same: a hole of another width is seen in the volume of all bodies
@@ -29,16 +34,23 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:  # noqa: AR
     files = manifest.read(outputs).files
     if not files:
         yield unreadable("bodies.stl", manifest.NAME, "lists no file")
-    stems = [path.removesuffix(".stl") for path in sorted(files) if path.endswith(".stl")]
-    parts = {s: [f"{s}{end}" for end in (".3mf", ".step") if f"{s}{end}" in files] for s in stems}
+    parts = dict(_parts(files))
     steps = [path for path in sorted(files) if path.endswith(".step")]
     shapes = step_shapes([outputs / path for path in steps])
     for part, paths in parts.items():
-        if paths:
-            yield from _part(outputs, f"{part}.stl", paths, files, shapes)
+        yield from _part(outputs, f"{part}.stl", paths, files, shapes)
     for path in steps:
-        if path.removesuffix(".step") not in stems:
+        if path.removesuffix(".step") not in parts:
             yield from _alone(outputs, path, files, shapes[outputs / path])
+
+
+def _parts(files: Files) -> Iterator[tuple[str, list[str]]]:
+    """Parts that are printed, and the files beside the STL that each must have."""
+    stems = {PurePath(path).with_suffix("").as_posix() for path in files if path.endswith(_PRINTED)}
+    for stem in sorted(stems):
+        if not stem.startswith(_SHOWN):
+            ends = (".3mf",) if stem.startswith(_CUT) else (".3mf", ".step")
+            yield stem, [f"{stem}{end}" for end in ends]
 
 
 def _alone(
@@ -56,13 +68,13 @@ def _alone(
         mesh = read_mesh(outputs / scene)
         seen = (np.asarray(mesh.triangles, dtype=np.float64), files[scene])
         ours, theirs = _in_one_frame(seen, (shape.triangles, files[path]))
+        share = _share(volume_mm3(theirs), ours)
     except OutputError as error:
         yield unreadable("bodies.scene", path, str(error))
         return
     boxes = [np.array([s.min(axis=(0, 1)), s.max(axis=(0, 1))]) for s in (ours, theirs)]
     off = float(np.abs(boxes[0] - boxes[1]).max())
     yield of.figure("scene", off, 0.0, AGREE_MM, note=f"off the box round {scene}", at="box")
-    share = volume_mm3(theirs) / volume_mm3(ours)
     yield of.near("scene", share, 1.0, _SCENE, f"of the volume of {scene}", unit="", at="volume")
 
 
@@ -71,6 +83,8 @@ def _part(
 ) -> Iterator[Measurement]:
     """Everything about the other files of one part."""
     try:
+        if stl not in files:
+            raise OutputError("is not in the manifest: it was not written")
         mesh = read_mesh(outputs / stl)
     except OutputError as error:
         yield unreadable("bodies.stl", stl, str(error))
@@ -79,20 +93,36 @@ def _part(
     for path in paths:
         of = Subject("bodies", path)
         try:
+            if path not in files:
+                raise OutputError("is not in the manifest: it was not written")
             shape = shapes.get(outputs / path) or three_mf_triangles(outputs / path)
             if isinstance(shape, OutputError):
                 raise shape
+            exact = None
             if isinstance(shape, StepShape):
+                exact = shape.volume_mm3
                 yield of.figure("solids", shape.solids, count, count, "solids")
                 shape = shape.triangles
             ours, theirs = _in_one_frame((surface, files[stl]), (shape, files[path]))
+            share = _share(volume_mm3(theirs) if exact is None else exact, ours)
         except OutputError as error:
             yield unreadable("bodies.surface", path, str(error))
             continue
         off = apart_mm(ours, theirs, 2 * AGREE_MM)
         yield of.figure("surface", off, 0.0, AGREE_MM, note=f"off the surface of {stl}")
-        share = volume_mm3(theirs) / volume_mm3(ours)
         yield of.near("volume", share, 1.0, VOLUME, f"of that of {stl}", unit="")
+
+
+def _share(found_mm3: float, surface: Vectors) -> float:
+    """A volume as a share of that inside a surface.
+
+    Raises:
+        OutputError: if that has none.
+    """
+    whole = volume_mm3(surface)
+    if not whole:
+        raise OutputError("the mesh that it is held against has no volume")
+    return found_mm3 / whole
 
 
 def _in_one_frame(*placed: tuple[Vectors, manifest.Entry]) -> Iterator[Vectors]:
@@ -101,12 +131,12 @@ def _in_one_frame(*placed: tuple[Vectors, manifest.Entry]) -> Iterator[Vectors]:
     Raises:
         OutputError: if they are in different frames, or a matrix is none.
     """
-    frames = {entry.frame for _, entry in placed}
+    frames = {str(entry.frame) for _, entry in placed}
     if len(frames - {""}) > 1:
         raise OutputError(f"is in another frame: {', '.join(sorted(frames))}")
     for triangles, entry in placed:
-        matrix = np.array(entry.to_sensor, dtype=np.float64)
-        if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
+        matrix = entry.matrix
+        if matrix is None:
             raise OutputError("the manifest has no matrix of it")
         moved = triangles if "" in frames else applied(matrix, triangles.reshape(-1, 3))
         yield moved.reshape(-1, 3, 3)

@@ -22,6 +22,7 @@ _HEADER = re.compile(
     r"(?:\s*(?:#(?:pragma once|include <stdint\.h>|ifndef \w+|endif|define .*)(?=\s)"
     rf"|namespace lumitip \{{|\}}|constexpr \w+ \w+(?:\[\w*\])? = {_VALUE};))*\s*"
 )
+_NAMED = re.compile(r"^(?:#define|constexpr \w+) (\w+)", re.MULTILINE)
 _LAYOUT, _PROTOCOL = "firmware/layout.h", "firmware/protocol.h"
 _SKETCH = "firmware/firmware.ino"
 
@@ -29,7 +30,7 @@ _SKETCH = "firmware/firmware.ino"
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Read both headers as a compiler would, and hold them against the cells."""
     layout = design.layout
-    wired, protocol = _text(outputs / _LAYOUT), _text(outputs / _PROTOCOL)
+    wired, protocol = (_COMMENT.sub("", _text(outputs / f)) for f in (_LAYOUT, _PROTOCOL))
     yield _channels(wired, layout)
     yield _pins(wired, layout, design)
     yield _converter(wired, layout, design)
@@ -122,25 +123,30 @@ def _protocol(text: str, layout: Layout) -> Measurement:
 
 
 def _form(*headers: str) -> Measurement:
-    """Whether a compiler can read both headers: constants, and settings with a balanced `#if`."""
+    """Whether a compiler can read both headers: constants, and settings with a balanced `#if`, each
+    name once."""
     wrong = 0
     for text in headers:
-        code = _COMMENT.sub("", text)
-        wrong += _HEADER.fullmatch(code) is None
-        wrong += code.count("#ifndef") != code.count("#endif")
-        wrong += code.count("{") != code.count("}")
-        wrong += code.count("namespace") != 1
+        names = _NAMED.findall(text)
+        wrong += _HEADER.fullmatch(text) is None
+        wrong += text.count("#ifndef") != text.count("#endif")
+        wrong += text.count("{") != text.count("}")
+        wrong += text.count("namespace") != 1
+        wrong += len(set(names)) != len(names)
     return _faults("firmware.form", _LAYOUT, wrong, "constants and settings alone")
 
 
 def _sources(outputs: Path) -> Measurement:
     """The files that all designs share are there, and as they are shipped."""
+    shipped = firmware_sources()
+    if not shipped:
+        return unreadable("firmware.sources", _SKETCH, "this installation has no firmware")
     wrong = [
         source.name
-        for source in firmware_sources()
+        for source in shipped
         if sha256_of(outputs / "firmware" / source.name) != sha256_of(source)
     ]
-    return count("firmware.sources", _SKETCH, wrong, "files are missing or not as shipped")
+    return count("firmware.sources", _SKETCH, wrong, "files are not as this version ships them")
 
 
 def _faults(check: str, subject: str, faults: int, note: str) -> Measurement:

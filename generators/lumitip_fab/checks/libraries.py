@@ -1,7 +1,8 @@
-"""A board's project: its libraries hold the parts that board and schematic show, and its rules are
-those of the board."""
+"""A board's project: its libraries hold the parts that board and schematic show; its rules, classes
+and nets agree with each other and with the board's nets."""
 
 import json
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -33,16 +34,18 @@ _TABLES = {"fp": f"{_LIBRARY}.pretty", "sym": f"{_LIBRARY}.kicad_sym"}
 _DRAWN = ("fp_line", "fp_rect", "fp_circle", "fp_arc", "fp_poly")
 _OF_THE_PART = ("Fab", "CrtYd")
 """Layers of lines that no neighbour trims, as the silkscreen's are."""
+_MOUNTED = {"smd", "through_hole"}
+_FORM = ("roundrect_rratio", "solder_mask_margin", "solder_paste_margin")
 _BACK = str.maketrans("FB", "BF")
 _SAME_MM = 1e-4
-_SEVERITIES = {"error", "warning", "ignore"}
 _RULES = {
     "min_clearance": "clearance",
     "min_track_width": "track_width",
     "min_via_diameter": "via_diameter",
     "min_through_hole_diameter": "via_drill",
 }
-"""Least values of a project, and the values of its net classes that they must not be above."""
+"""Rules of a project, each the least of a value of its net classes."""
+_POSITIVE = (*_RULES, "min_hole_clearance", "min_hole_to_hole", "min_copper_edge_clearance")
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -79,7 +82,7 @@ def _tables(folder: Path) -> Iterator[str]:
 def _footprints(folder: Path) -> Iterator[str]:
     """Parts of the board that are not as their footprint in the library."""
     board = read_nodes(folder / f"{folder.name}.kicad_pcb")
-    known: dict[str, set[Any]] = {}
+    known: dict[str, Counter[Any]] = {}
     for part in children(board, "footprint"):
         library, _, name = str(part[1]).partition(":")
         if name not in known:
@@ -90,12 +93,13 @@ def _footprints(folder: Path) -> Iterator[str]:
     yield from sorted(files - known.keys())
 
 
-def _shape(part: Node) -> set[Any]:
+def _shape(part: Node) -> Counter[Any]:
     """Pads and lines of a footprint as seen from its own side."""
     back = words(child(part, "layer")) == ["B.Cu"]
     at = numbers(child(part, "at"))
     turn = at[2] if len(at) > 2 else 0.0
-    found: set[Any] = {("models", *(str(m[1]) for m in children(part, "model")))}
+    kinds = frozenset(words(child(part, "attr"))) & _MOUNTED
+    found = Counter[Any]([kinds, *(str(model[1]) for model in children(part, "model"))])
     for pad in children(part, "pad"):
         x, y, *angle = numbers(child(pad, "at"))
         own = (angle[0] if angle else 0.0) - turn
@@ -103,11 +107,12 @@ def _shape(part: Node) -> set[Any]:
         drill = tuple(words(child(pad, "drill")))
         kind, size = tuple(words(pad)[:3]), numbers(child(pad, "size"))
         place = _rounded(x, -y if back else y), round((-own if back else own) % 180, 3) % 180
-        found.add((kind, place, size, drill, frozenset(layers)))
+        form = tuple(numbers(child(pad, key)) for key in _FORM)
+        found[kind, place, size, drill, frozenset(layers), form] += 1
     for line in children(part, *_DRAWN):
         (layer,) = words(child(line, "layer"))
         if layer.partition(".")[2] in _OF_THE_PART:
-            found.add((line[0], _side(layer, back), frozenset(_places(line, back))))
+            found[line[0], _side(layer, back), frozenset(_places(line, back))] += 1
     return found
 
 
@@ -149,12 +154,12 @@ def _project(folder: Path) -> Iterator[str]:
     rules, nets = record["board"]["design_settings"]["rules"], record["net_settings"]
     if record["meta"]["filename"] != f"{folder.name}.kicad_pro":
         yield "filename"
-    odd = set(record["erc"]["rule_severities"].values()) - _SEVERITIES
-    yield from (f"severity {word}" for word in sorted(odd))
+    yield from (rule for rule, s in record["erc"]["rule_severities"].items() if s != "error")
     classes = {c["name"]: c for c in nets["classes"]}
     for rule, value in _RULES.items():
-        if rules[rule] <= 0 or any(c[value] < rules[rule] for c in classes.values()):
+        if rules[rule] != min(c[value] for c in classes.values()):
             yield rule
+    yield from (rule for rule in _POSITIVE if rules[rule] <= 0)
     board = read_nodes(folder / f"{folder.name}.kicad_pcb")
     named = {str(net[2]) for net in children(board, "net") if net[2]}
     patterns = {entry["pattern"]: entry["netclass"] for entry in nets["netclass_patterns"]}

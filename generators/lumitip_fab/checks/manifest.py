@@ -1,5 +1,6 @@
 """`manifest.json` against the files it lists: their bytes, and the frames it says they are in."""
 
+import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePath
 
@@ -18,8 +19,11 @@ Vector = NDArray[np.float64]
 READS = ("*",)
 _FILE = "manifest.json"
 _PLACE_MM = 0.05
-_SQUARE, _SCALES = 1e-6, (1.0, 1000.0)
-_RECORDS = (".json", ".xml", "")
+_SQUARE = 1e-6
+_SOLIDS = (".stl", ".3mf", ".step")
+_SENT = (*_SOLIDS, ".pdf", ".dxf", ".zip", ".kicad_pcb", ".ino")
+"""Kinds of file from which somebody makes something, wherever they lie."""
+_RECORDS = (".json", ".xml", ".toml", "")
 """Kinds of which people and programs keep reports and settings beside the design's files."""
 _OWN = (".", "~", "_autosave-")
 """What names of files begin with that editors keep while they work."""
@@ -36,8 +40,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     note = ", ".join(changed[:3]) or f"of {len(recorded.files)}"
     yield Measurement("manifest.files", _FILE, len(changed), 0, 0, "missing or changed", note)
     yield count("manifest.strays", ".", sorted(_strays(outputs, recorded.files)), "files")
-    odd = [path for path, entry in sorted(recorded.files.items()) if not _motion(entry.to_sensor)]
-    yield count("manifest.matrices", _FILE, odd, "matrices that are no motion or mirror image")
+    odd = [path for path, entry in sorted(recorded.files.items()) if not _placed(path, entry)]
+    yield count("manifest.matrices", _FILE, odd, "matrices that place no file")
     for path, entry in sorted(recorded.files.items()):
         if path in odd:
             continue
@@ -50,30 +54,37 @@ def _as_listed(path: Path, entry: manifest.Entry) -> bool:
     return manifest.sha256_of(path) == entry.sha256 and path.stat().st_size == entry.bytes
 
 
-def _motion(rows: object) -> bool:
-    """Whether rows of numbers move, turn or mirror a body as it is, in mm or in metres."""
-    try:
-        matrix = np.array(rows)
-        square, last = matrix[:3, :3] @ matrix[:3, :3].T, matrix[3]
-        return matrix.dtype.kind in "if" and bool(
-            any(np.allclose(square / scale**2, np.eye(3), atol=_SQUARE) for scale in _SCALES)
-            and (last == (0, 0, 0, 1)).all()
-        )
-    except (ValueError, IndexError, TypeError):
+def _placed(path: str, entry: manifest.Entry) -> bool:
+    """Whether a file's matrix is one: of a solid, a motion or mirror image; a page may be scaled
+    for its printer, and a scene is in metres."""
+    matrix = entry.matrix
+    if matrix is None or (matrix[3] != (0, 0, 0, 1)).any():
         return False
+    square = matrix[:3, :3] @ matrix[:3, :3].T
+    if path.endswith(_SOLIDS):
+        return bool(np.allclose(square, np.eye(3), atol=_SQUARE))
+    return bool(np.linalg.det(square) > 0)
 
 
 def _strays(outputs: Path, listed: Mapping[str, manifest.Entry]) -> Iterator[str]:
-    """Files of no build that could be sent or printed for one of the design's: they lie in its
-    folders, and are of a kind that is listed there."""
+    """Files of no build that could be sent or printed for one of the design's: of a kind that is
+    ordered or made from, or of one that is listed in their folder."""
     kinds = {(path.parent, path.suffix) for path in map(PurePath, listed)}
-    for folder in sorted({folder for folder, _ in kinds}):
-        for file in sorted((outputs / folder).glob("*")):
-            path = (folder / file.name).as_posix()
-            kind = folder, file.suffix
-            known = path in listed or file.suffix in _RECORDS or file.name.startswith(_OWN)
-            if kind in kinds and not known:
+    for top, folders, names in os.walk(outputs):
+        folder = PurePath(os.path.relpath(top, outputs))
+        folders[:] = [f for f in folders if not _others(outputs / folder / f)]
+        for name in names:
+            path = (folder / name).as_posix()
+            kind = folder, PurePath(name).suffix
+            sent = kind[1] in _SENT or (kind in kinds and kind[1] not in _RECORDS)
+            if sent and path not in listed and not name.startswith(_OWN):
                 yield path
+
+
+def _others(folder: Path) -> bool:
+    """Whether a folder is hidden, an editor's, or holds another design's outputs."""
+    theirs = folder.name.startswith(_OWN) or folder.name.endswith("-backups")
+    return theirs or (folder / manifest.NAME).is_file()
 
 
 def _frame(outputs: Path, path: str, matrix: Matrix, design: Design) -> Measurement:
@@ -88,7 +99,7 @@ def _frame(outputs: Path, path: str, matrix: Matrix, design: Design) -> Measurem
     turn = matrix[:3, :3]
     apart.append(float(np.abs(turn @ turn.T - np.eye(3)).max()) + abs(np.linalg.det(turn) - 1))
     note = "after its matrix, from its place in its frame"
-    return Measurement("manifest.frames", name, float(max(apart)), 0, _PLACE_MM, "mm", note)
+    return Measurement("manifest.frames", name, float(np.max(apart)), 0, _PLACE_MM, "mm", note)
 
 
 def _apart(path: str, low: Vector, high: Vector, design: Design) -> Iterator[float]:

@@ -1,6 +1,7 @@
 """The manual's two forms say the same: every passage of the HTML stands in the PDF, in order, and
 nothing else does. A passage that stands in a note too has the same numbers there."""
 
+import hashlib
 import math
 import re
 from collections import Counter, defaultdict
@@ -18,11 +19,13 @@ from lumitip_fab.checks.readers.manual import (
 from lumitip_fab.checks.result import Measurement, Subject, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
+from lumitip_fab.pipeline.manifest import sha256_of
 
 READS = ("manual/*", "*/*.md", "assembly/*.svg", "boards/*/*.png", "mask/*.svg", "wiring/*.svg")
 
 _HTML, _PDF = "manual/manual.html", "manual/manual.pdf"
 _CHAPTER = re.compile(r"(\d+)\. ")
+_ITEM = re.compile(r"^\d+\. ")
 _NUMBER = re.compile(r"\d+(\.\d+)?")
 _ELSEWHERE = re.compile(r"(https?|mailto):")
 _SHORT = 12  # letters that stand in many places
@@ -68,8 +71,7 @@ def _wrong_pictures(outputs: Path, page: Html) -> list[str]:
     """Pictures that are not their files, and drawings of the work that are not shown."""
     wrong = []
     for shown in page.pictures:
-        path = outputs / shown.file
-        if not (path.is_file() and path.read_bytes() == shown.data):
+        if sha256_of(outputs / shown.file) != hashlib.sha256(shown.data).hexdigest():
             wrong.append(shown.file)
     work = {path.relative_to(outputs).as_posix() for path in outputs.glob("manual/*.svg")}
     return wrong + sorted(work - {shown.file for shown in page.pictures})
@@ -78,7 +80,8 @@ def _wrong_pictures(outputs: Path, page: Html) -> list[str]:
 def _leads(outputs: Path, page: Html, to: str) -> bool:
     if to.startswith("#"):
         return to[1:] in page.places
-    return bool(_ELSEWHERE.match(to)) or (outputs / "manual" / to.partition("#")[0]).is_file()
+    file = outputs / "manual" / to.partition("#")[0]
+    return bool(_ELSEWHERE.match(to)) or sha256_of(file) is not None
 
 
 def _at_odds(outputs: Path, page: Html) -> Iterator[str]:
@@ -90,10 +93,10 @@ def _at_odds(outputs: Path, page: Html) -> Iterator[str]:
         except OutputError as error:
             yield f"{path.name} {error}"
             continue
-        for line in lines:
+        for line in (_ITEM.sub("", line) for line in lines):
             noted[_NUMBER.sub("0", line)].add(line)
     shown: dict[str, set[str]] = defaultdict(set)
-    for line in page.lines:
+    for line in (_ITEM.sub("", line) for line in page.lines):
         shown[_NUMBER.sub("0", line)].add(line)
     for form in sorted(shown.keys() & noted.keys()):
         if sum(map(str.isalpha, form)) > _FEW:

@@ -105,6 +105,7 @@ def _rulers(
             (int(word.text), place - ticks[0])
             for word in picture.words
             if word.text.isdecimal()
+            and len(word.text) <= len(str(_RULER))
             and abs(word.middle_mm[1 - along] - found[along].across_mm) < _BESIDE_MM
             and ticks[0] - _PAST_MM < (place := word.middle_mm[along] / scale[along])
             and place < ticks[-1] + _PAST_MM

@@ -24,6 +24,7 @@ _CHECKS = (
     "closed",
     "open",
     "slide",
+    "limits",
     "mass",
     "centre",
     "reach",
@@ -34,7 +35,14 @@ GAP_MM = 0.1  # the meshes are coarser than the parts, and a film's taper ends i
 MASS = 0.01
 CENTRE_MM = 0.1
 REACH_MM = 0.02
+_FASTEST_MM_S = 500.0  # no electric gripper of the catalogue's size is faster
 BULK = 1.6  # volume of what touches, of what is seen
+_MOUNT = (
+    '<joint name="{0}_mount" type="fixed"><parent link="${{parent}}"></parent>'
+    '<child link="{0}"></child><ns0:insert_block xmlns:ns0="http://www.ros.org/wiki/xacro"'
+    ' name="origin"></ns0:insert_block></joint>'
+)
+"""Joint of a macro, in the form of `Link.text`, without its place, which the user gives."""
 _URDF = Subject("robot", _FILE)
 
 
@@ -98,6 +106,16 @@ def _places(model: Model, design: Design) -> Iterator[Measurement]:
     yield _URDF.figure(
         "slide", np.max(aside), 0, PLACE_MM, note="aside, on the way from closed to open"
     )
+    wanted_n = design.strength.closing_n
+    joints = {name: joint for name, joint in model.joints.items() if joint.kind == "prismatic"}
+    speed = min(joint.speed_mm_s for joint in joints.values())
+    wrong = [
+        name
+        for name, joint in joints.items()
+        if (joint.lower_mm, joint.effort_n) != (0.0, wanted_n) or joint.speed_mm_s != speed
+    ]
+    yield _URDF.count("limits", wrong, "joints")
+    yield _URDF.figure("limits", speed, 1.0, _FASTEST_MM_S, "mm/s", "greatest speed of a finger")
 
 
 def _slid_mm(model: Model, finger: str) -> Vectors:
@@ -172,8 +190,9 @@ def _macros(outputs: Path) -> Measurement:
         for f in _FINGERS
         if f"lumitip_{f}" in model.links
     }
+    wanted |= {f"lumitip_{f}_mount": _MOUNT.format(f) for f in _FINGERS}
     apart = sorted(name for name in {*wanted, *macros} if wanted.get(name) != macros.get(name))
-    return count("robot.macros", _MACROS, apart, "links unlike the URDF's")
+    return count("robot.macros", _MACROS, apart, "links and joints unlike the URDF's")
 
 
 def _about_x(angle_deg: float) -> Vectors:

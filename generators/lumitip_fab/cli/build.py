@@ -47,7 +47,7 @@ def build(
         from lumitip_fab.derive import resolve
 
         found = resolve(load(file))
-        return found.design, documents(found.config, found.design)
+        return found.design, documents(found.config, found.design, out)
 
     return pipeline.build(input_hash(file), resolved, out, STEPS, progress, only)
 

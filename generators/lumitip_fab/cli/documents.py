@@ -2,6 +2,7 @@
 the catalogue is the user's own."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import tomli_w
 
@@ -21,23 +22,25 @@ _PARTS = """
 """
 
 
-def documents(config: Input, design: Design) -> tuple[Artefact, ...]:
-    """The documents of a design."""
+def documents(config: Input, design: Design, out: Path) -> tuple[Artefact, ...]:
+    """The documents of a design, for an output folder."""
     return (
         Artefact("layout.json", design.layout.to_json().encode()),
         Artefact("design.json", design_text(design).encode()),
         Artefact("resolved.toml", _resolved(config).encode(), frame=""),
-        *_own_parts(config),
+        *_own_parts(config, out / "parts"),
     )
 
 
-def _own_parts(config: Input) -> Iterator[Artefact]:
+def _own_parts(config: Input, target: Path) -> Iterator[Artefact]:
     """Catalogue files that differ from the packaged ones: beside `resolved.toml`, which needs them
-    where it is built."""
+    where it is built. The user's own, where they lie there already, are no output."""
     folder = design_folder(config.sources[0].path)
     for kind in Catalogue.model_fields:
-        packaged = packaged_design() / "parts" / f"{kind}.toml"
-        data = parts_file(folder, kind).read_bytes()
+        packaged, used = packaged_design() / "parts" / f"{kind}.toml", parts_file(folder, kind)
+        if used.resolve().parent == target.resolve():
+            continue
+        data = used.read_bytes()
         if data != packaged.read_bytes():
             yield Artefact(f"parts/{kind}.toml", data, frame="")
 

@@ -82,19 +82,24 @@ def _attribute(record: Any, field: str) -> Any:
     return getattr(getattr(record, section), key)
 
 
-def load(path: Path) -> Input:
+def load(path: Path, folder: Path | None = None) -> Input:
     """Read and validate a parameter file.
+
+    Args:
+        path: the file.
+        folder: where the catalogue is looked for first; the design folder that the file lies in, if
+            it is left out.
 
     Raises:
         InputError: with every fault of the file, its bases and the catalogue files it uses.
     """
-    own = read_toml(path, shown_path(path))
+    own, folder = read_toml(path, shown_path(path)), folder or design_folder(path)
     sources, faults = _with_bases(own)
     merged = _merged(sources)
-    faults = faults or _without_base(sources[-1], merged, design_folder(path))
+    faults = faults or _without_base(sources[-1], merged, folder)
     whole = not faults  # without its bases, what a file leaves out is no fault
     merged, automatic = filled(merged)
-    catalogue, broken = _catalogue(design_folder(path))
+    catalogue, broken = _catalogue(folder)
     faults += broken
     parameters = None
     try:

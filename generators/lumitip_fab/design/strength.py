@@ -42,6 +42,11 @@ class Strength:
     lap_mm: float
     """Overlap of the test that gave it: near its end a joint bears its peak within that length."""
 
+    @property
+    def closing_n(self) -> float:
+        """Greatest force of the gripper; that of a finger, where the gripper's is not known."""
+        return self.gripper_n or self.rated_force_n
+
 
 @dataclass(frozen=True)
 class Loads:

@@ -5,9 +5,12 @@ import json
 import os
 import tempfile
 from dataclasses import asdict, dataclass, fields
-from pathlib import Path
+from pathlib import Path, PurePath
+
+import numpy as np
 
 from lumitip_fab.design.encoding import canonical, encoded
+from lumitip_fab.design.frames import Matrix
 from lumitip_fab.pipeline.artefact import Artefact, Facts
 from lumitip_fab.pipeline.dependencies import Dependencies
 
@@ -32,6 +35,16 @@ class Entry:
     """4x4 matrix from the file's own frame, mm."""
     facts: Facts
     """Figures that other steps use."""
+
+    @property
+    def matrix(self) -> Matrix | None:
+        """`to_sensor` as an array; none where it is not 4 x 4 finite numbers."""
+        try:
+            matrix = np.array(self.to_sensor)
+        except (ValueError, TypeError):  # ragged
+            return None
+        plain = matrix.shape == (4, 4) and matrix.dtype.kind in "if"
+        return matrix.astype(np.float64) if plain and np.isfinite(matrix).all() else None
 
     @property
     def version(self) -> str:
@@ -98,6 +111,8 @@ def read(out: Path) -> Manifest:
         if record["schema_version"] != SCHEMA_VERSION:
             return Manifest({}, {})
         files = {path: Entry(**values) for path, values in record["files"].items()}
+        if not all(map(_usable, files, files.values())):
+            return Manifest({}, {})
         tasks = {
             name: Ran(str(task["key"]), tuple(task["fields"]), tuple(task["reads"]))
             for name, task in record["tasks"].items()
@@ -106,6 +121,12 @@ def read(out: Path) -> Manifest:
         return Manifest(files, tasks, origin)
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return Manifest({}, {})
+
+
+def _usable(path: str, entry: Entry) -> bool:
+    """Whether a file is named that can lie in an output folder."""
+    inside = "\0" not in path and ".." not in PurePath(path).parts and path[:1] != "/"
+    return inside and isinstance(entry.sha256, str) and isinstance(entry.frame, str)
 
 
 def write(out: Path, manifest: Manifest) -> None:
@@ -144,6 +165,6 @@ def content_hash(out: Path) -> str:
 def sha256_of(path: Path) -> str | None:
     """SHA-256 (hex) of a file; none where it cannot be read."""
     try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
+        return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else None
     except OSError:
         return None

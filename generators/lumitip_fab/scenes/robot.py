@@ -21,9 +21,7 @@ from lumitip_fab.scenes.bodies import finger_bodies, layers_of, part_solid
 from lumitip_fab.scenes.glb import colour_of
 
 MM = 0.001
-# What a simulator lets the joints do: the largest of the Robotiq 2F-85's data sheet.
-SPEED_M_S = 0.15
-EFFORT_N = 235.0
+SPEED_M_S = 0.15  # the largest of the Robotiq 2F-85's data sheet; the catalogue has no speeds
 _NAMESPACE = "http://www.ros.org/wiki/xacro"
 
 
@@ -54,7 +52,7 @@ class FingerModel:
 
 
 def pair_urdf(
-    fingers: tuple[FingerModel, ...], tcp_mm: float, travel_mm: float, meshes: str
+    fingers: tuple[FingerModel, ...], tcp_mm: float, travel_mm: float, effort_n: float, meshes: str
 ) -> bytes:
     """A robot of two fingers that open.
 
@@ -62,6 +60,7 @@ def pair_urdf(
         fingers: both; the first is driven, the second mimics it.
         tcp_mm: height of the tool centre point above the base.
         travel_mm: how far each finger moves.
+        effort_n: greatest force of a joint.
         meshes: where the meshes are, relative to the file.
     """
     robot = Element("robot", name="lumitip")
@@ -78,7 +77,7 @@ def pair_urdf(
             "limit",
             lower="0",
             upper=_numbers([travel_mm * MM]),
-            effort=_numbers([EFFORT_N]),
+            effort=_numbers([effort_n]),
             velocity=_numbers([SPEED_M_S]),
         )
         if model is not fingers[0]:
@@ -194,7 +193,8 @@ def robot_files(design: Design) -> tuple[Artefact, ...]:
         )
         files += [Artefact(f"robot/{_MESHES}/{n}", export.mesh_stl(m)) for n, m in meshes.items()]
     pair = tuple(models)
-    urdf = pair_urdf(pair, float(to_base[2, 3]), closing.max_opening_mm / 2, _MESHES)
+    travel_mm, effort_n = closing.max_opening_mm / 2, design.strength.closing_n
+    urdf = pair_urdf(pair, float(to_base[2, 3]), travel_mm, effort_n, _MESHES)
     masses = {f"{model.name}_g": model.weight.mass_g for model in pair}
     return (
         Artefact("robot/lumitip.urdf", urdf, frame="", facts=masses),

@@ -158,7 +158,7 @@ def read_html(path: Path) -> Html:
     try:
         page.feed(path.read_text(encoding="utf-8"))
         page.close()
-    except (OSError, XmlTree.ParseError, *MALFORMED) as error:
+    except (OSError, XmlTree.ParseError, AssertionError, *MALFORMED) as error:
         raise OutputError(f"cannot be read: {error!r:.200}") from error
     return page
 
@@ -173,7 +173,7 @@ def read_note(path: Path) -> Html:
     try:
         page.feed(_MARKDOWN.render(path.read_text(encoding="utf-8")))
         page.close()
-    except (OSError, *MALFORMED) as error:
+    except (OSError, AssertionError, *MALFORMED) as error:
         raise OutputError(f"cannot be read: {error!r:.200}") from error
     return page
 
@@ -199,6 +199,6 @@ def read_sheets(path: Path) -> tuple[Sheet, ...]:
                 text = page.get_textpage()
                 foot = text.get_text_bounded(top=_FOOT_PT)
                 sheets.append(Sheet(text.get_text_bounded(bottom=_FOOT_PT), foot))
-    except (OSError, *MALFORMED) as error:
+    except (OSError, AssertionError, *MALFORMED) as error:
         raise OutputError(f"cannot be read: {error!r:.200}") from error
     return tuple(sheets)

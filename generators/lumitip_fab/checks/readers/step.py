@@ -22,7 +22,7 @@ Vectors = NDArray[np.float64]  # not of `solids`: its libraries are not needed h
 _CHORD_MM, _ANGLE_RAD = 0.01, 0.2
 _END = b"END-ISO-10303-21;"
 _LARGEST_MM3 = 1e9  # chords of 0.01 mm on a part in metres would take hours
-_LONGEST_S = 300  # a damaged file may keep the kernel for ever
+_LONGEST_S = 120  # a damaged file may keep the kernel for ever
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,14 +51,15 @@ def _kernel(paths: Sequence[Path]) -> dict[Path, StepShape | OutputError] | None
         written = Path(folder) / "shapes.npz"
         try:
             subprocess.run(
-                [sys.executable, "-m", __name__, str(written)],
+                [sys.executable, "-P", "-m", __name__, str(written)],
                 input=json.dumps([str(path.absolute()) for path in paths]).encode(),
-                env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+                env=os.environ
+                | {"PYTHONPATH": os.pathsep.join(entry or str(Path.cwd()) for entry in sys.path)},
                 capture_output=True,
                 timeout=_LONGEST_S,
                 check=True,
             )
-        except subprocess.SubprocessError:
+        except (OSError, subprocess.SubprocessError):
             return None
         with np.load(written) as kept:
             return {path: _shape(kept, str(k)) for k, path in enumerate(paths)}
@@ -86,16 +87,16 @@ def _main() -> None:
 
 
 def _read(path: Path) -> StepShape:
-    from OCP.BRepGProp import BRepGProp
-    from OCP.BRepMesh import BRepMesh_IncrementalMesh
-    from OCP.GProp import GProp_GProps
-    from OCP.IFSelect import IFSelect_RetDone
-    from OCP.STEPControl import STEPControl_Reader
-    from OCP.TopAbs import TopAbs_SOLID
-    from OCP.TopExp import TopExp_Explorer
-
-    reader = STEPControl_Reader()
     try:
+        from OCP.BRepGProp import BRepGProp
+        from OCP.BRepMesh import BRepMesh_IncrementalMesh
+        from OCP.GProp import GProp_GProps
+        from OCP.IFSelect import IFSelect_RetDone
+        from OCP.STEPControl import STEPControl_Reader
+        from OCP.TopAbs import TopAbs_SOLID
+        from OCP.TopExp import TopExp_Explorer
+
+        reader = STEPControl_Reader()
         if not path.read_bytes().rstrip().endswith(_END):
             raise OutputError("it is cut short")
         if reader.ReadFile(str(path)) != IFSelect_RetDone or not reader.TransferRoots():
@@ -111,6 +112,8 @@ def _read(path: Path) -> StepShape:
             solids += 1
             explorer.Next()
         return StepShape(_triangles(shape), mass.Mass(), solids)
+    except ImportError as error:
+        raise OutputError(f"the CAD kernel cannot be loaded: {error!s:.200}") from error
     except (OSError, *MALFORMED) as error:  # whatever the kernel stumbles over
         raise OutputError(f"{error!r:.200}") from error
 

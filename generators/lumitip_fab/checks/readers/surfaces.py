@@ -8,6 +8,7 @@ from scipy.spatial import cKDTree
 from lumitip_fab.checks.readers.solids import Vectors
 
 _SAME_MM = 0.001  # a point of both
+_BLOCK, _MOST = 2000, 2_000_000  # points at a time, and pairs with triangles near them
 _EDGES = ((0, 1), (1, 2), (2, 0))
 
 
@@ -48,11 +49,14 @@ def _off(one: Vectors, other: Vectors, near_mm: float) -> Vectors:
     low, high = other.min(axis=1) - near_mm, other.max(axis=1) + near_mm
     i, j, k = np.argsort((high - low).mean(axis=0))  # the tree parts them where they are short
     tree = shapely.STRtree(shapely.box(low[:, i], low[:, j], high[:, i], high[:, j]))
-    point, triangle = tree.query(shapely.points(points[left][:, [i, j]]))
-    height = points[left[point], k]
-    meet = (height >= low[triangle, k]) & (height <= high[triangle, k])
-    point, triangle = left[point[meet]], triangle[meet]
-    np.minimum.at(off, point, _distance(points[point], other[triangle]))
+    for block in np.array_split(left, len(left) // _BLOCK + 1):
+        point, triangle = tree.query(shapely.points(points[block][:, [i, j]]))
+        height = points[block[point], k]
+        meet = (height >= low[triangle, k]) & (height <= high[triangle, k])
+        point, triangle = block[point[meet]], triangle[meet]
+        if len(point) > _MOST:
+            continue  # triangles in disorder: the distance to the nearest point stands
+        np.minimum.at(off, point, _distance(points[point], other[triangle]))
     return np.asarray(off)
 
 

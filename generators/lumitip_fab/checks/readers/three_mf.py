@@ -24,7 +24,10 @@ def three_mf_triangles(path: Path) -> Vectors:
             another kind, or numbers that are not finite.
     """
     try:
-        model = ElementTree.fromstring(unpacked(path)[_MODEL])
+        package = unpacked(path)
+        if package.keys() != {_MODEL, "[Content_Types].xml", "_rels/.rels"}:
+            raise ValueError(f"holds other files than one model: {', '.join(sorted(package))}")
+        model = ElementTree.fromstring(package[_MODEL])
         if model.get("unit") != "millimeter":
             raise ValueError(f"unit {model.get('unit')!r}, millimeter is needed")
         objects = {o.attrib["id"]: o for o in model.iter(f"{_NAMESPACE}object")}

@@ -12,6 +12,7 @@ from lumitip_fab.checks.readers.solids import Vectors, read_mesh
 from lumitip_fab.errors import OutputError
 
 M_TO_MM = 1000.0
+_LIMITS = ("lower", "upper", "effort", "velocity")
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +38,10 @@ class Joint:
     place: Vectors
     """4x4, from the child's frame at zero to the parent's, mm."""
     axis: Vectors
+    lower_mm: float
     upper_mm: float
+    effort_n: float
+    speed_mm_s: float
     mimics: str
 
 
@@ -74,7 +78,7 @@ def read_urdf(path: Path) -> Model:
 
 
 def read_macros(path: Path) -> dict[str, str]:
-    """The link of each macro of a xacro file, in the form of `Link.text`, by the link's name.
+    """The link and the joint of each macro of a xacro file, in the form of `Link.text`, by name.
 
     Raises:
         OutputError: if the file cannot be read.
@@ -83,8 +87,8 @@ def read_macros(path: Path) -> dict[str, str]:
         root = ElementTree.fromstring(path.read_bytes())
     except (OSError, ElementTree.ParseError) as error:
         raise OutputError(f"cannot be read: {error}") from error
-    links = root.findall(".//link")
-    return {str(e.get("name")).replace("${prefix}", "lumitip_"): _text(e) for e in links}
+    parts = [*root.findall(".//link"), *root.findall(".//joint")]
+    return {str(e.get("name")).replace("${prefix}", "lumitip_"): _text(e) for e in parts}
 
 
 def _link(element: Element, folder: Path) -> Link:
@@ -121,6 +125,7 @@ def _joint(element: Element) -> Joint:
     place[:3, :3] = _turn(*_three(_attribute(element, "origin", "rpy")))
     place[:3, 3] = M_TO_MM * _three(_attribute(element, "origin", "xyz"))
     slides = element.get("type") == "prismatic"
+    limits = {n: float(_attribute(element, "limit", n)) if slides else 0.0 for n in _LIMITS}
     mimic = element.find("mimic")
     return Joint(
         kind=element.attrib["type"],
@@ -128,7 +133,10 @@ def _joint(element: Element) -> Joint:
         child=_attribute(element, "child", "link"),
         place=place,
         axis=_three(_attribute(element, "axis", "xyz") if slides else "0 0 0"),
-        upper_mm=M_TO_MM * float(_attribute(element, "limit", "upper")) if slides else 0.0,
+        lower_mm=M_TO_MM * limits["lower"],
+        upper_mm=M_TO_MM * limits["upper"],
+        effort_n=limits["effort"],
+        speed_mm_s=M_TO_MM * limits["velocity"],
         mimics="" if mimic is None else mimic.attrib["joint"],
     )
 
