@@ -2,7 +2,6 @@
 
 import json
 import re
-import shutil
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -18,7 +17,7 @@ from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline import manifest
 
 pytestmark = pytest.mark.slow
-STL, MOULD = "backing/receiver_backing.stl", "mould/receiver_mould.stl"
+STL, PROP = "mould/clamp.stl", "mould/prop.stl"
 THREE_MF, STEP = STL.replace(".stl", ".3mf"), STL.replace(".stl", ".step")
 ENDS = (".stl", ".3mf", ".step")
 Damage = Callable[[Path], None]
@@ -37,7 +36,7 @@ def in_model(path: Path, change: Callable[[str], str]) -> None:
 
 
 def model(old: str, new: str) -> Damage:
-    """Replace a pattern in the model of the receiver's 3MF."""
+    """Replace a pattern in the model of the clamp's 3MF."""
     return lambda folder: in_model(folder / THREE_MF, lambda text: re.sub(old, new, text))
 
 
@@ -48,18 +47,14 @@ def a_vertex_moved(folder: Path) -> None:
     in_model(folder / THREE_MF, change)
 
 
-def a_hole_moved(folder: Path) -> None:
-    """Corners round one of the bolt's holes, by 0.3 mm."""
+def an_arm_moved(folder: Path) -> None:
+    """Corners of one side of the clamp, by 0.3 mm."""
 
     def move(found: re.Match[str]) -> str:
-        x, y, z = (float(found[k]) for k in (1, 2, 3))
-        near = np.hypot(x, y - 8.0) < 6.0
-        return f'x="{x + (0.3 if near else 0.0):.5f}" y="{y:.5f}" z="{z:.5f}"'
+        x = float(found[1])
+        return f'x="{x + 0.3 * (x > 30.0):.5f}"'
 
-    in_model(
-        folder / THREE_MF,
-        lambda text: re.sub(r'x="([-\d.]+)" y="([-\d.]+)" z="([-\d.]+)"', move, text),
-    )
+    in_model(folder / THREE_MF, lambda text: re.sub(r'x="([-\d.]+)"', move, text))
 
 
 def spoilt(folder: Path) -> None:
@@ -71,19 +66,13 @@ def packages_gone(folder: Path) -> None:
     remove_packages(folder / STL)
 
 
-def moulds_for_backings(folder: Path) -> None:
+def parts_swapped(folder: Path) -> None:
     for end in (".3mf", ".step"):
-        shutil.copy((folder / MOULD).with_suffix(end), (folder / STL).with_suffix(end))
-
-
-def fingers_swapped(folder: Path) -> None:
-    for end in (".3mf", ".step"):
-        one = (folder / STL).with_suffix(end)
-        swap(one, one.with_name(f"emitter_backing{end}"))
+        swap((folder / STL).with_suffix(end), (folder / PROP).with_suffix(end))
 
 
 def step_changed(old: str, new: str, count: int = 0) -> Damage:
-    """Replace a pattern in the receiver's STEP file."""
+    """Replace a pattern in the clamp's STEP file."""
 
     def damage(folder: Path) -> None:
         text = (folder / STEP).read_text(encoding="ascii")
@@ -163,11 +152,10 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
     "3MF not a number": (model(r'x="[-\d.]+"', 'x="nan"'), {"surface"}),
     "3MF support only": (model('type="model"', 'type="support"'), {"surface"}),
     "a vertex moved": (a_vertex_moved, {"surface"}),
-    "a hole moved": (a_hole_moved, {"surface"}),
+    "an arm moved": (an_arm_moved, {"surface", "volume"}),
     "spoilt": (spoilt, {"surface"}),
     "gone": (packages_gone, {"surface"}),
-    "moulds": (moulds_for_backings, {"surface", "volume"}),
-    "fingers swapped": (fingers_swapped, {"surface", "volume"}),
+    "parts swapped": (parts_swapped, {"surface", "volume"}),
     "STEP moved": (step_moved, {"surface"}),
     "STEP in metres": (step_changed(r"SI_UNIT\(\.MILLI\.,", "SI_UNIT($,"), {"surface"}),
     "STEP of a surface": (
@@ -195,12 +183,11 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
 
 @pytest.fixture
 def parts(outputs: Path, tmp_path: Path) -> Path:
-    """Both backings and a mould, with their lines of the manifest, to damage."""
+    """The clamp and the prop, with their lines of the manifest, to damage."""
     folder = excerpt(outputs, tmp_path / "parts", "manifest.json")
     path = folder / manifest.NAME
     record = json.loads(path.read_text())
-    stems = (STL, MOULD, STL.replace("receiver", "emitter"))
-    kept = {f"{stem.removesuffix('.stl')}{end}" for stem in stems for end in ENDS}
+    kept = {f"{part.removesuffix('.stl')}{end}" for part in (STL, PROP) for end in ENDS}
     record["files"] = {name: entry for name, entry in record["files"].items() if name in kept}
     path.write_text(json.dumps(record))
     return excerpt(outputs, folder, *sorted(kept))
