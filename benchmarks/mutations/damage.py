@@ -1,4 +1,4 @@
-"""What a mutator is, and what it returns."""
+"""Kind of a mutator, and of its result."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -64,7 +64,7 @@ def artefact(path: str) -> str:
 def of_whole_file(
     kind: str, out: Path, path: str, paths: list[str], rng: Generator
 ) -> tuple[Files, str]:
-    """What differs when a file is swapped with another, not written, or written twice.
+    """Differences of a file that is swapped with another, not written, or written twice.
 
     Args:
         kind: one of `WHOLE`.

@@ -27,7 +27,7 @@ _TOOL = re.compile(r"^T\d+C([\d.]+)$", re.MULTILINE)
 
 @lru_cache(maxsize=16)
 def _area(text: str) -> BaseGeometry | None:
-    """What a file paints; none where it cannot be read."""
+    """Painted area of a file; none where it cannot be read."""
     try:
         return gerber_area(text)
     except (ArithmeticError, LookupError, ValueError, SyntaxError, AttributeError, TypeError):

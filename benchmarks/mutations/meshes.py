@@ -17,7 +17,7 @@ AXES = "xyz"
 ALIKE_MM = 0.2
 _LOOKED_AT = 40
 LEAST_MOMENT_MM4 = 0.5
-"""What moving a hole of 1 mm by 0.3 mm in a wall of 2 mm changes. A corner that slides along its
+"""Change by a hole of 1 mm in a wall of 2 mm that moves by 0.3 mm. A corner that slides along its
 own edge, or within its own face, changes nothing: that leaves the body as it is."""
 
 

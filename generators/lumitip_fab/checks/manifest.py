@@ -26,7 +26,7 @@ _SENT = (*_SOLIDS, ".pdf", ".dxf", ".zip", ".kicad_pcb", ".ino")
 _RECORDS = (".json", ".xml", ".toml", "")
 """Kinds of which people and programs keep reports and settings beside the design's files."""
 _OWN = (".", "~", "_autosave-")
-"""What names of files begin with that editors keep while they work."""
+"""Beginnings of the names of files that editors keep while they work."""
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:

@@ -165,7 +165,9 @@ def _attribute(element: Element | None, path: str, name: str) -> str:
 
 
 def _text(element: Element) -> str:
-    text = ElementTree.canonicalize(ElementTree.tostring(element), strip_text=True)
+    # Prefixes as written depend on what else has run in this process.
+    whole = ElementTree.tostring(element)
+    text = ElementTree.canonicalize(whole, strip_text=True, rewrite_prefixes=True)
     for own in ("${prefix}", "lumitip_", "${meshes}/", "meshes/"):
         text = text.replace(own, "")
     return text
