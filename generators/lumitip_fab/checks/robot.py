@@ -37,12 +37,8 @@ CENTRE_MM = 0.1
 REACH_MM = 0.02
 _FASTEST_MM_S = 500.0  # no electric gripper of the catalogue's size is faster
 BULK = 1.6  # volume of what touches, of what is seen
-_MOUNT = (
-    '<joint name="{0}_mount" type="fixed"><parent link="${{parent}}"></parent>'
-    '<child link="{0}"></child><n0:insert_block xmlns:n0="http://www.ros.org/wiki/xacro"'
-    ' name="origin"></n0:insert_block></joint>'
-)
-"""Joint of a macro, in the form of `Link.text`, without its place, which the user gives."""
+_MOUNT = "fixed; parent ${{parent}}; child ${{prefix}}{0}; insert_block origin"
+"""Joint of a macro: the user gives parent and place."""
 _URDF = Subject("robot", _FILE)
 
 

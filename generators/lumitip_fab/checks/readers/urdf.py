@@ -78,7 +78,8 @@ def read_urdf(path: Path) -> Model:
 
 
 def read_macros(path: Path) -> dict[str, str]:
-    """The link and the joint of each macro of a xacro file, in the form of `Link.text`, by name.
+    """The link and the joint of each macro of a xacro file, by name: links in the form of
+    `Link.text`, joints as their type and what is in them, one after the other.
 
     Raises:
         OutputError: if the file cannot be read.
@@ -87,8 +88,16 @@ def read_macros(path: Path) -> dict[str, str]:
         root = ElementTree.fromstring(path.read_bytes())
     except (OSError, ElementTree.ParseError) as error:
         raise OutputError(f"cannot be read: {error}") from error
-    parts = [*root.findall(".//link"), *root.findall(".//joint")]
-    return {str(e.get("name")).replace("${prefix}", "lumitip_"): _text(e) for e in parts}
+    found = {str(e.get("name")): _text(e) for e in root.findall(".//link")}
+    found |= {str(e.get("name")): _inside(e) for e in root.findall(".//joint")}
+    return {name.replace("${prefix}", "lumitip_"): text for name, text in found.items()}
+
+
+def _inside(joint: Element) -> str:
+    """Type of a joint, then tag and values of each element in it; without namespaces, whose names in
+    a text depend on what else ran in this process."""
+    inside = [(e.tag.rpartition("}")[2], *e.attrib.values()) for e in joint]
+    return "; ".join([str(joint.get("type")), *(" ".join(each) for each in inside)])
 
 
 def _link(element: Element, folder: Path) -> Link:
@@ -165,9 +174,7 @@ def _attribute(element: Element | None, path: str, name: str) -> str:
 
 
 def _text(element: Element) -> str:
-    # Prefixes as written depend on what else has run in this process.
-    whole = ElementTree.tostring(element)
-    text = ElementTree.canonicalize(whole, strip_text=True, rewrite_prefixes=True)
+    text = ElementTree.canonicalize(ElementTree.tostring(element), strip_text=True)
     for own in ("${prefix}", "lumitip_", "${meshes}/", "meshes/"):
         text = text.replace(own, "")
     return text
