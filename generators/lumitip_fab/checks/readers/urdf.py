@@ -94,8 +94,8 @@ def read_macros(path: Path) -> dict[str, str]:
 
 
 def _inside(joint: Element) -> str:
-    """Type of a joint, then tag and values of each element in it; without namespaces, whose names in
-    a text depend on what else ran in this process."""
+    """Type of a joint, then tag and values of each element in it; without namespaces, whose names
+    in a text depend on what else ran in this process."""
     inside = [(e.tag.rpartition("}")[2], *e.attrib.values()) for e in joint]
     return "; ".join([str(joint.get("type")), *(" ".join(each) for each in inside)])
 
