@@ -105,14 +105,14 @@ def entry(artefact: Artefact, task: str) -> Entry:
 
 
 def read(out: Path) -> Manifest:
-    """The manifest of an output folder; an empty one where there is none that can be used."""
+    """The manifest of an output folder, without entries that no build writes; an empty one where
+    there is none that can be used."""
     try:
         record = json.loads((out / NAME).read_text(encoding="utf-8"))
         if record["schema_version"] != SCHEMA_VERSION:
             return Manifest({}, {})
-        files = {path: Entry(**values) for path, values in record["files"].items()}
-        if not all(map(_usable, files, files.values())):
-            return Manifest({}, {})
+        entries = {path: Entry(**values) for path, values in record["files"].items()}
+        files = {path: entry for path, entry in entries.items() if _usable(path, entry)}
         tasks = {
             name: Ran(str(task["key"]), tuple(task["fields"]), tuple(task["reads"]))
             for name, task in record["tasks"].items()
