@@ -85,12 +85,6 @@ def flip_a_triangle(file: Path) -> None:
     trimesh.Trimesh(mesh.vertices, faces, process=False).export(file)
 
 
-def remove_packages(stl: Path) -> None:
-    """Remove the 3MF and the STEP beside an STL file."""
-    stl.with_suffix(".3mf").unlink()
-    stl.with_suffix(".step").unlink()
-
-
 def swap(one: Path, other: Path) -> None:
     """Put each file in the other's place."""
     first, second = one.read_bytes(), other.read_bytes()

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from damages import cut_short, excerpt, failing, passing, remove_packages, swap
+from damages import cut_short, excerpt, failing, passing, swap
 from lumitip_fab.checks.readers.step import step_shapes
-from lumitip_fab.checks.readers.surfaces import apart_mm, volume_mm3
+from lumitip_fab.checks.readers.surfaces import surfaces_apart_mm, volume_mm3
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline import manifest
 
@@ -63,7 +63,8 @@ def spoilt(folder: Path) -> None:
 
 
 def packages_gone(folder: Path) -> None:
-    remove_packages(folder / STL)
+    (folder / THREE_MF).unlink()
+    (folder / STEP).unlink()
 
 
 def parts_swapped(folder: Path) -> None:
@@ -255,10 +256,10 @@ def plate(holes: int) -> np.ndarray:
 
 def test_distances_of_surfaces() -> None:
     whole, drilled = plate(0), plate(1)
-    assert apart_mm(whole, whole, 0.1) == 0.0
-    assert apart_mm(whole, drilled, 0.1) > 0.5
-    assert apart_mm(drilled, plate(2), 0.1) > 0.5
-    assert apart_mm(drilled, drilled + np.array([0.0, 0.04, 0.0]), 0.1) == pytest.approx(
+    assert surfaces_apart_mm(whole, whole, 0.1) == 0.0
+    assert surfaces_apart_mm(whole, drilled, 0.1) > 0.5
+    assert surfaces_apart_mm(drilled, plate(2), 0.1) > 0.5
+    assert surfaces_apart_mm(drilled, drilled + np.array([0.0, 0.04, 0.0]), 0.1) == pytest.approx(
         0.04, abs=1e-3
     )
-    assert apart_mm(whole, plate(0)[::-1], 0.1) == 0.0
+    assert surfaces_apart_mm(whole, plate(0)[::-1], 0.1) == 0.0

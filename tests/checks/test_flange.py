@@ -72,5 +72,5 @@ def test_every_check_fails_for_some_damage(outputs: Path) -> None:
     found = list(checks.measure(outputs, read_design(outputs / "design.json")))
     assert [m for m in found if not m.passed] == []
     names = {m.check.removeprefix("flange.") for m in found}
-    told = set().union(*LOWERS.values(), *UPPERS.values(), WIDE_BOARD)
-    assert names - told == {"readable", "watertight"}
+    named = set().union(*LOWERS.values(), *UPPERS.values(), WIDE_BOARD)
+    assert names - named == {"readable", "watertight"}

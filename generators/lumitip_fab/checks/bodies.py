@@ -8,7 +8,7 @@ import numpy as np
 
 from lumitip_fab.checks.readers.solids import Vectors, bodies, read_mesh
 from lumitip_fab.checks.readers.step import StepShape, step_shapes
-from lumitip_fab.checks.readers.surfaces import apart_mm, volume_mm3
+from lumitip_fab.checks.readers.surfaces import surfaces_apart_mm, volume_mm3
 from lumitip_fab.checks.readers.three_mf import three_mf_triangles
 from lumitip_fab.checks.result import Measurement, Subject, unreadable
 from lumitip_fab.design import Design
@@ -29,7 +29,7 @@ Files = Mapping[str, manifest.Entry]
 Shapes = Mapping[Path, StepShape | OutputError]
 
 
-def measure(outputs: Path, design: Design) -> Iterator[Measurement]:  # noqa: ARG001
+def measure(outputs: Path, _design: Design) -> Iterator[Measurement]:
     """Hold every 3MF and STEP that has an STL beside it against that."""
     files = manifest.read(outputs).files
     if not files:
@@ -95,22 +95,33 @@ def _part(
         try:
             if path not in files:
                 raise OutputError("is not in the manifest: it was not written")
-            shape = shapes.get(outputs / path) or three_mf_triangles(outputs / path)
-            if isinstance(shape, OutputError):
-                raise shape
-            exact = None
-            if isinstance(shape, StepShape):
-                exact = shape.volume_mm3
-                yield of.figure("solids", shape.solids, count, count, "solids")
-                shape = shape.triangles
-            ours, theirs = _in_one_frame((surface, files[stl]), (shape, files[path]))
-            share = _share(volume_mm3(theirs) if exact is None else exact, ours)
+            found, found_mm3 = _surface(outputs / path, shapes)
+            ours, theirs = _in_one_frame((surface, files[stl]), (found, files[path]))
+            share = _share(found_mm3, ours)
         except OutputError as error:
             yield unreadable("bodies.surface", path, str(error))
             continue
-        off = apart_mm(ours, theirs, 2 * AGREE_MM)
+        off = surfaces_apart_mm(ours, theirs, 2 * AGREE_MM)
         yield of.figure("surface", off, 0.0, AGREE_MM, note=f"off the surface of {stl}")
         yield of.near("volume", share, 1.0, VOLUME, f"of that of {stl}", unit="")
+        step = shapes.get(outputs / path)
+        if isinstance(step, StepShape):
+            yield of.figure("solids", step.solids, count, count, "solids")
+
+
+def _surface(path: Path, shapes: Shapes) -> tuple[Vectors, float]:
+    """Triangles of a file, and its volume: of a STEP file that of the exact solids.
+
+    Raises:
+        OutputError: if it cannot be read.
+    """
+    shape = shapes.get(path)
+    if isinstance(shape, OutputError):
+        raise shape
+    if isinstance(shape, StepShape):
+        return shape.triangles, shape.volume_mm3
+    triangles = three_mf_triangles(path)
+    return triangles, volume_mm3(triangles)
 
 
 def _share(found_mm3: float, surface: Vectors) -> float:

@@ -64,7 +64,7 @@ def _straight(model: Model) -> bool:
 def _size(path: Path, subject: str, shape: Footprint) -> Measurement:
     """How far the sides and the top of a model are from the body's."""
     try:
-        corners, _ = step_mm(path)
+        corners = step_mm(path)
     except OutputError as error:
         return unreadable("models.size", subject, str(error))
     box = _seen(shape)

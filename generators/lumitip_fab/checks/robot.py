@@ -102,6 +102,11 @@ def _places(model: Model, design: Design) -> Iterator[Measurement]:
     yield _URDF.figure(
         "slide", np.max(aside), 0, PLACE_MM, note="aside, on the way from closed to open"
     )
+    yield from _limits(model, design)
+
+
+def _limits(model: Model, design: Design) -> Iterator[Measurement]:
+    """Where the joints begin, how strong and how fast they are."""
     wanted_n = design.strength.closing_n
     joints = {name: joint for name, joint in model.joints.items() if joint.kind == "prismatic"}
     speed = min(joint.speed_mm_s for joint in joints.values())

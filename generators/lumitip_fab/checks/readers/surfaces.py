@@ -12,7 +12,7 @@ _BLOCK, _MOST = 2000, 2_000_000  # points at a time, and pairs with triangles ne
 _EDGES = ((0, 1), (1, 2), (2, 0))
 
 
-def apart_mm(one: Vectors, other: Vectors, near_mm: float) -> float:
+def surfaces_apart_mm(one: Vectors, other: Vectors, near_mm: float) -> float:
     """Farthest distance of a point of one surface to the other, either way (mm).
 
     It is taken at the corners and in the middle of the triangles, so a hole, a pocket or a pin

@@ -34,8 +34,8 @@ def corners_mm(path: Path) -> NDArray[np.float64]:
     return corners.astype(float)
 
 
-def step_mm(path: Path) -> tuple[NDArray[np.float64], int]:
-    """All vertices of a STEP file, shape `(n, 3)`, and how many solids it holds.
+def step_mm(path: Path) -> NDArray[np.float64]:
+    """All vertices of a STEP file, shape `(n, 3)`.
 
     Only for files whose bodies are not moved: those of single parts.
 
@@ -48,7 +48,7 @@ def step_mm(path: Path) -> tuple[NDArray[np.float64], int]:
         found = [[float(v) for v in points[n].split(",")] for n in _VERTEX.findall(text)]
         if not found or "SI_UNIT(.MILLI.,.METRE.)" not in text:
             raise ValueError("no vertices in mm")
-        return np.array(found, dtype=np.float64).reshape(-1, 3), text.count("MANIFOLD_SOLID_BREP(")
+        return np.array(found, dtype=np.float64).reshape(-1, 3)
     except FileNotFoundError as error:
         raise OutputError(f"{path}: no such file") from error
     except (OSError, ValueError, KeyError) as error:
