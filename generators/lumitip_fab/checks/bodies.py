@@ -27,6 +27,9 @@ VOLUME = 0.002  # of chords on curved faces
 _SCENE = 0.0002  # the same: a hole of another width is seen in the volume of all bodies
 Files = Mapping[str, manifest.Entry]
 Shapes = Mapping[Path, StepShape | OutputError]
+_known: dict[str, tuple[Measurement, ...]] = {}
+"""Of groups of files whose bytes and entries were the same before in this process: most parts stay
+as they were when one file has changed, and the CAD kernel is slow."""
 
 
 def measure(outputs: Path, _design: Design) -> Iterator[Measurement]:
@@ -34,23 +37,46 @@ def measure(outputs: Path, _design: Design) -> Iterator[Measurement]:
     files = manifest.read(outputs).files
     if not files:
         yield unreadable("bodies.stl", manifest.NAME, "lists no file")
-    parts = dict(_parts(files))
-    steps = [path for path in sorted(files) if path.endswith(".step")]
-    shapes = step_shapes([outputs / path for path in steps])
-    for part, paths in parts.items():
-        yield from _part(outputs, f"{part}.stl", paths, files, shapes)
-    for path in steps:
-        if path.removesuffix(".step") not in parts:
-            yield from _alone(outputs, path, files, shapes[outputs / path])
+    keys = {group: _key(outputs, group, files) for group in _groups(files)}
+    new = [path for group, key in keys.items() if key not in _known for path in group]
+    steps = [outputs / path for path in new if path.endswith(".step") and path in files]
+    shapes = step_shapes(steps) if steps else {}
+    for group, key in keys.items():
+        if key in _known:
+            yield from _known[key]
+            continue
+        measured = tuple(_group(outputs, group, files, shapes))
+        if not any(isinstance(shapes.get(outputs / path), OutputError) for path in group):
+            _known[key] = measured  # else the kernel may have had no time: it is asked again
+        yield from measured
 
 
-def _parts(files: Files) -> Iterator[tuple[str, list[str]]]:
-    """Parts that are printed, and the files beside the STL that each must have."""
-    stems = {PurePath(path).with_suffix("").as_posix() for path in files if path.endswith(_PRINTED)}
-    for stem in sorted(stems):
-        if not stem.startswith(_SHOWN):
-            ends = (".3mf",) if stem.startswith(_CUT) else (".3mf", ".step")
-            yield stem, [f"{stem}{end}" for end in ends]
+def _groups(files: Files) -> Iterator[tuple[str, ...]]:
+    """Files of each body: the STL of a printed part and what must stand beside it, or a STEP file
+    that no STL stands for."""
+    parts = {PurePath(path).with_suffix("").as_posix() for path in files if path.endswith(_PRINTED)}
+    for part in sorted(parts):
+        if not part.startswith(_SHOWN):
+            ends = (".stl", ".3mf") if part.startswith(_CUT) else (".stl", ".3mf", ".step")
+            yield tuple(f"{part}{end}" for end in ends)
+    for path in sorted(files):
+        if path.endswith(".step") and path.removesuffix(".step") not in parts:
+            yield (path, path.replace(".step", ".glb"))
+
+
+def _key(outputs: Path, group: tuple[str, ...], files: Files) -> str:
+    """Stands for the bytes and entries of some files."""
+    return repr([(path, manifest.sha256_of(outputs / path), files.get(path)) for path in group])
+
+
+def _group(
+    outputs: Path, group: tuple[str, ...], files: Files, shapes: Shapes
+) -> Iterator[Measurement]:
+    first, *others = group
+    if first.endswith(".stl"):
+        yield from _part(outputs, first, others, files, shapes)
+    else:
+        yield from _alone(outputs, first, files, shapes[outputs / first])
 
 
 def _alone(
