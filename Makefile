@@ -50,7 +50,7 @@ watch: $(FAB) ## build and check whenever DESIGN is saved; an open page is loade
 	$(BIN)/lumitip-fab watch $(DESIGN) --out $(OUT) --page
 
 test: $(DEV) ## run the tests
-	$(BIN)/python -m pytest -n auto --dist loadfile
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadfile
 
 lint: $(DEV) ## format, lint, types, licences, schema
 	$(BIN)/ruff format --check .

@@ -3,7 +3,7 @@
 import shutil
 import tempfile
 import traceback
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -66,15 +66,21 @@ def derive_file(file: Path) -> Trial:
     return Trial(file.stem)
 
 
-def build_file(file: Path) -> Trial:
-    """Build a user file and check what was built."""
-    from lumitip_fab.checks.run import run_checks
+def build_file(file: Path, steps: Collection[str] = (), checks: Collection[str] = ()) -> Trial:
+    """Build a user file and check what was built.
+
+    Args:
+        file: the parameter file.
+        steps: names of the steps to run; empty for all.
+        checks: names of the check modules to run; empty for all.
+    """
+    from lumitip_fab.checks.run import MODULES, run_checks
     from lumitip_fab.cli.build import build
 
     with tempfile.TemporaryDirectory(prefix="acceptance") as out:
         try:
-            build(file, Path(out))
-            failed = run_checks(Path(out)).failed
+            build(file, Path(out), only=steps)
+            failed = run_checks(Path(out), checks or MODULES).failed
         except Exception:  # noqa: BLE001 - whatever it is, it is what is counted
             return Trial(file.stem, crash=traceback.format_exc())
     lines = (f"{m.check} {m.subject}: {m.measured:g} {m.unit} ({m.limit}) {m.note}" for m in failed)

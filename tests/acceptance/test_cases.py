@@ -1,5 +1,6 @@
 """User files that once failed, derived anew; and random ones, built and checked."""
 
+from collections.abc import Collection
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,10 @@ from acceptance.trial import Trial, build_file, derive_file, design_folder
 
 CASES = sorted((Path(__file__).parent / "cases").glob("*.toml"))
 BUILT_CASES = sorted((Path(__file__).parent / "cases" / "built").glob("*.toml"))
+BOARD_CASES = sorted((Path(__file__).parent / "cases" / "boards").glob("*.toml"))
+"""Designs of which a board failed: nothing else of them is built."""
+BOARD_STEPS = ("finger_board", "other_board", "models")
+BOARD_CHECKS = ("board", "orders", "schematic", "models", "libraries")
 BUILT = 6
 """`make bench` builds more of them, and larger boards, which are routed for minutes."""
 MOST_CELLS = 80
@@ -30,15 +35,25 @@ def test_a_design_that_was_refused_is_accepted(case: Path) -> None:
     assert trial.refusals == ()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("case", BUILT_CASES, ids=lambda case: case.stem)
-def test_a_design_that_failed_a_check_passes_every_check(case: Path) -> None:
+def _passes(case: Path, steps: Collection[str] = (), checks: Collection[str] = ()) -> None:
     with design_folder() as folder:
         file = folder / case.name
         file.write_text(case.read_text(encoding="utf-8"), encoding="utf-8")
-        trial = build_file(file)
+        trial = build_file(file, steps, checks)
     assert not trial.crash, trial.crash
     assert trial.failed == ()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", BUILT_CASES, ids=lambda case: case.stem)
+def test_a_design_that_failed_a_check_passes_every_check(case: Path) -> None:
+    _passes(case)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", BOARD_CASES, ids=lambda case: case.stem)
+def test_boards_that_failed_a_check_pass_every_check_of_boards(case: Path) -> None:
+    _passes(case, BOARD_STEPS, BOARD_CHECKS)
 
 
 def cells(drawn: Design) -> int:

@@ -176,11 +176,15 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
             ny, nx = y + DY[way], x + DX[way]
             if ny < window[0] or ny > window[1] or nx < window[2] or nx > window[3]:
                 continue
+            there = layer * plane + ny * width + nx
+            known = reached[there] - 1e-4 if seen[there] == turn else np.inf
+            length = grain[layer, way]
+            if so_far + bend + length >= known:
+                continue  # not even over free nodes; most neighbours end here, and cheaply
             c = narrow if neck[ny, nx] else wide
             holder = owner[c, layer, ny, nx]
             if holder not in (0, net):
                 continue
-            there = layer * plane + ny * width + nx
             at_goal = tree[there]
             if at_goal:
                 if not target[there]:
@@ -192,11 +196,9 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
             cost = (
                 so_far
                 + bend
-                + grain[layer, way]
-                * (1 + history[layer, ny, nx])
-                * (1 + crowded * taken[c, layer, ny, nx])
+                + length * (1 + history[layer, ny, nx]) * (1 + crowded * taken[c, layer, ny, nx])
             )
-            if seen[there] != turn or cost < reached[there] - 1e-4:
+            if cost < known:
                 seen[there], reached[there], came[there] = turn, cost, way
                 keys[size] = cost + _left(ny, nx, box) + to_layer[layer]
                 queue[size] = there
@@ -204,17 +206,18 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
                 size += 1
         if before == VIA or near_via[y, x]:
             continue
+        there = node + plane if layer == 0 else node - plane
+        known = reached[there] - 1e-4 if seen[there] == turn else np.inf
+        if so_far + costs[0] >= known:
+            continue
         c = narrow if neck[y, x] else wide
         holder = owner[c, 2, y, x]
-        there = node + plane if layer == 0 else node - plane
         if holder not in (0, net) or (tree[there] and not target[there]):
-            continue
-        if _via_behind(node, came, plane, width, via_reach):
             continue
         cost = so_far + costs[0] * (1 + history[0, y, x] + history[1, y, x]) * (
             1 + crowded * taken[c, 2, y, x]
         )
-        if seen[there] != turn or cost < reached[there] - 1e-4:
+        if cost < known and not _via_behind(node, came, plane, width, via_reach):
             seen[there], reached[there], came[there] = turn, cost, VIA
             keys[size], queue[size] = cost + _left(y, x, box) + to_layer[1 - layer], there
             _sift_up(keys, queue, size)
