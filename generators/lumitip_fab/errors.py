@@ -22,7 +22,7 @@ class Problem:
 
     def __str__(self) -> str:
         place = f"{self.file}:{self.line}" if self.line else self.file
-        return f"{place}: {self.text}"
+        return _printable(f"{place}: {self.text}")
 
     @property
     def text(self) -> str:
@@ -31,6 +31,13 @@ class Problem:
             return self.message
         joint = " " if self.message.startswith(("is ", "has ")) else ": "
         return f"{self.field}{joint}{self.message}"
+
+
+def _printable(line: str) -> str:
+    """One line that shows what a terminal would act on, like a newline in a name, as an escape."""
+    return "".join(
+        c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in line
+    )
 
 
 class InputError(FabError):

@@ -1,6 +1,8 @@
 """Where the design folder is: the user's own, or the one that comes with the package; and where
 the firmware is."""
 
+import os
+import stat
 from importlib.resources import files
 from pathlib import Path
 
@@ -18,12 +20,37 @@ def firmware_sources() -> tuple[Path, ...]:
     return tuple(sorted(f for f in folder.glob("*.*") if f.suffix in (".h", ".ino", ".md")))
 
 
+def resolved(path: Path) -> Path:
+    """A path without symbolic links; of links in a circle, as far as it can be followed."""
+    return Path(os.path.realpath(path))  # `Path.resolve` raises for a circle before Python 3.13
+
+
+LARGEST_INPUT_BYTES = 200_000
+
+
+def read_input(path: Path) -> bytes:
+    """The bytes of a file that a user wrote.
+
+    Raises:
+        OSError: if it cannot be read, or is no plain file but a folder, pipe or device, of which
+            some never end; the reason is its `strerror`.
+    """
+    found = path.stat()
+    if not stat.S_ISREG(found.st_mode):
+        kind = "folder" if path.is_dir() else "pipe or device"
+        raise OSError(0, f"it is a {kind}, and a file is needed")
+    if found.st_size > LARGEST_INPUT_BYTES:
+        size = f"it has {found.st_size} bytes, and at most {LARGEST_INPUT_BYTES} are allowed"
+        raise OSError(0, size)
+    return path.read_bytes()
+
+
 def design_folder(file: Path) -> Path:
     """The folder that a parameter file belongs to: that or the one above with `parts/` in it.
 
     No base file outside it is read.
     """
-    here = file.resolve().parent
+    here = resolved(file).parent
     return next((f for f in (here, here.parent) if (f / "parts").is_dir()), here)
 
 
@@ -33,6 +60,6 @@ def parts_folders(folder: Path) -> tuple[Path, Path]:
 
 
 def parts_file(folder: Path, kind: str) -> Path:
-    """The catalogue file of a kind: the user's own, else the packaged one."""
+    """The catalogue file of a kind: the user's own, whatever lies there, else the packaged one."""
     own, packaged = (f / f"{kind}.toml" for f in parts_folders(folder))
-    return own if own.is_file() else packaged
+    return own if os.path.lexists(own) else packaged

@@ -6,8 +6,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from lumitip_fab.config.source import DEEPEST, LARGEST_FILE_BYTES, flat, read_toml
+from lumitip_fab.config.source import DEEPEST, flat, read_toml
 from lumitip_fab.errors import InputError
+from lumitip_fab.paths import LARGEST_INPUT_BYTES
 
 TEXT = '''\
 # a comment with key = 1
@@ -101,17 +102,18 @@ def _refused(path: Path) -> str:
 
 def test_files_that_cannot_be_read_are_refused_with_the_reason(tmp_path: Path) -> None:
     assert _refused(tmp_path / "none.toml") == "x.toml: cannot be read: No such file or directory"
-    assert "cannot be read: Is a directory" in _refused(tmp_path)
+    assert "cannot be read: it is a folder, and a file is needed" in _refused(tmp_path)
     assert "is not a valid file name" in _refused(Path("a\0b.toml"))
 
 
 def test_a_file_too_large_is_not_parsed(tmp_path: Path) -> None:
     path = tmp_path / "x.toml"
-    path.write_text("#" + "x" * LARGEST_FILE_BYTES, encoding="utf-8")
+    path.write_text("#" + "x" * LARGEST_INPUT_BYTES, encoding="utf-8")
     assert _refused(path) == (
-        f"x.toml: has {LARGEST_FILE_BYTES + 1} bytes; at most {LARGEST_FILE_BYTES} are allowed"
+        f"x.toml: cannot be read: it has {LARGEST_INPUT_BYTES + 1} bytes, and at most "
+        f"{LARGEST_INPUT_BYTES} are allowed"
     )
-    path.write_text("#" + "x" * (LARGEST_FILE_BYTES - 1), encoding="utf-8")
+    path.write_text("#" + "x" * (LARGEST_INPUT_BYTES - 1), encoding="utf-8")
     assert read_toml(path, "x.toml").table == {}
 
 

@@ -235,11 +235,14 @@ def _tuples(value: Any) -> Any:
 
 
 def _catalogue(folder: Path) -> tuple[dict[str, Any], list[Problem]]:
+    """Entries by kind, without the kinds that cannot be read, and their faults."""
     tables: dict[str, Any] = {}
     faults: list[Problem] = []
+    own = folder / "parts"
+    if os.path.lexists(own) and not own.is_dir():
+        faults.append(Problem(shown_path(own), 0, "", "is no folder; the catalogue's is needed"))
     for kind, field in Catalogue.model_fields.items():
         path = parts_file(folder, kind)
-        tables[kind] = {}
         try:
             source = read_toml(path, shown_path(path))
             model: Any = field.annotation
@@ -265,7 +268,7 @@ def _unknown_parts(
         name = table.get(key) if isinstance(table, dict) else None
         if name == NONE and field in OPTIONAL:
             continue
-        if isinstance(name, str) and catalogue[kind] and name not in catalogue[kind]:
+        if isinstance(name, str) and name not in catalogue.get(kind, (name,)):
             source = _setting(sources, field)
             message = unknown_name(name, list(catalogue[kind]), f"parts/{kind}.toml")
             faults.append(Problem(shown_path(source.path), source.line(field), field, message))

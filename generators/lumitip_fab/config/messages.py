@@ -3,6 +3,7 @@
 import datetime
 import difflib
 import itertools
+import os
 import re
 import types
 import typing
@@ -55,7 +56,7 @@ _PATTERNS = {
 def shown_path(path: Path) -> str:
     """A file's name in messages: relative to the working folder where it lies below it."""
     try:
-        return str(path.resolve().relative_to(Path.cwd()))
+        return str(Path(os.path.abspath(path)).relative_to(Path.cwd()))  # noqa: PTH100 - links stay
     except ValueError:
         return str(path)
 
@@ -72,7 +73,7 @@ def unknown_name(name: str, allowed: Iterable[str], where: str) -> str:
     by_case = {each.casefold(): each for each in names}
     near = difflib.get_close_matches(name.casefold(), by_case, n=1, cutoff=0.5)
     hint = f"Did you mean {by_case[near[0]]!r}? " if near else ""
-    listed = ", ".join(names[:24]) + (", …" if len(names) > 24 else "")
+    listed = ", ".join(names[:24]) + (", …" if len(names) > 24 else "") or "none"
     return f"is {name!r:.80}, which does not exist. {hint}Names in {where}: {listed}"
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from lumitip_fab.errors import InputError, Problem
+from lumitip_fab.paths import read_input
 
 Table = dict[str, Any]
 _HEADER = re.compile(r"\s*\[{1,2}\s*([^\[\]]+?)\s*\]{1,2}\s*(#.*)?$")
@@ -18,7 +19,6 @@ _HINTS = {
     "Illegal character": ". End text with the same quotes as at its start.",
     "Unclosed": ". Close every bracket.",
 }
-LARGEST_FILE_BYTES = 200_000
 DEEPEST = 12  # tables and lists within each other; a parameter file needs three
 _LONGEST_NUMBER = re.compile(r"\d{4000}")  # beyond it Python itself refuses to read a number
 _LONGEST_STATEMENT = 400  # lines
@@ -64,10 +64,7 @@ def read_toml(path: Path, shown: str) -> Source:
         InputError: if it cannot be read, is too large or too deep, or is not TOML.
     """
     try:
-        if path.stat().st_size > LARGEST_FILE_BYTES:
-            size = path.stat().st_size
-            raise _refusal(shown, 0, f"has {size} bytes; at most {LARGEST_FILE_BYTES} are allowed")
-        data = path.read_bytes()
+        data = read_input(path)
         # Some editors begin a file with a byte-order mark, or end lines with two characters.
         text = data.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:

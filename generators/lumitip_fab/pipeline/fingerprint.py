@@ -9,7 +9,13 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import lumitip
-from lumitip_fab.paths import design_folder, firmware_sources, parts_folders
+from lumitip_fab.paths import (
+    design_folder,
+    firmware_sources,
+    parts_folders,
+    read_input,
+    resolved,
+)
 from lumitip_fab.pipeline import manifest
 
 PACKAGE = Path(__file__).parents[1]
@@ -119,7 +125,7 @@ def input_hash(file: Path) -> str:
         files = _with_bases(file)
         for folder in parts_folders(design_folder(file)):
             files += sorted(folder.glob("*.toml"))
-        lines = [f"{path.name}\0{hashlib.sha256(path.read_bytes()).hexdigest()}" for path in files]
+        lines = [f"{path.name}\0{hashlib.sha256(read_input(path)).hexdigest()}" for path in files]
     except (OSError, ValueError, RecursionError):
         return ""
     lines += [whole_code_hash(), installed_hash()]
@@ -129,11 +135,11 @@ def input_hash(file: Path) -> str:
 def _with_bases(file: Path) -> list[Path]:
     """The file and all that it extends; a circle ends where it closes."""
     files: list[Path] = []
-    name: object = file.resolve()
+    name: object = resolved(file)
     while isinstance(name, str | Path):
-        file = (file.resolve().parent / name).resolve()
+        file = resolved(resolved(file).parent / name)
         if file in files:
             break
         files.append(file)
-        name = tomllib.loads(file.read_text(encoding="utf-8")).get("extends")
+        name = tomllib.loads(read_input(file).decode()).get("extends")
     return files
