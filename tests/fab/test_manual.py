@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 
 from damages import edit, excerpt
 from lumitip_fab.design.encoding import read_design
+from lumitip_fab.docs.mounting import mounting
 from manual_figures import measure, read_pdf
 
 pytestmark = pytest.mark.slow
@@ -136,20 +138,46 @@ def test_the_pdf_tells_no_day(outputs: Path) -> None:
     assert not re.search(rb"D:(?!20000101)\d{8}", data)
 
 
-def test_each_step_at_the_bench_says_what_is_needed_and_what_the_signs_mean(copied: Path) -> None:
+def test_each_step_says_what_is_needed_and_what_the_signs_mean(copied: Path) -> None:
     steps = re.findall(
         r"<h2>\d+\. (.*?)</h2>(.*?)(?=<h2>|</body>)",
         (copied / HTML).read_text(encoding="utf-8"),
         re.DOTALL,
     )
     titles = [title for title, _ in steps]
-    first, last = titles.index("Put the board in"), titles.index("Wrap the finger")
-    assert last - first == 9
-    for title, text in steps[first : last + 1]:
+    assert (titles[0], titles[-1]) == ("Parts", "What wears")  # a list, and advice
+    for title, text in steps[1:-1]:
         assert "<strong>You need:</strong>" in text, title
         assert "<strong>Time:</strong>" in text, title
         assert "<th>what it means, what to do</th>" in text, title
+    first, last = titles.index("Put the board in"), titles.index("Wrap the finger")
+    assert last - first == 9
+    for title, text in steps[first : last + 1]:
         assert "data-file=" in text or title == "Try the silicone"
+
+
+def test_the_force_that_a_finger_bears_is_named_before_the_gripper_closes(copied: Path) -> None:
+    strength = read_design(copied / "design.json").strength
+    text = (copied / HTML).read_text(encoding="utf-8")
+    assert f"<td>{strength.rated_force_n:g} N</td>" in text[: text.index("<h2>1. Parts</h2>")]
+    mount = chapter(copied, "Mount")
+    limit = mount.index(f"Limit the force of the gripper to {strength.rated_force_n:g} N")
+    assert f"up to {strength.gripper_n:g} N, which can break a finger" in mount
+    assert limit < mount.index("open and close the")
+
+
+@pytest.mark.parametrize(
+    ("gripper_n", "said"),
+    [(0.0, "is in its maker's data sheet"), (30.0, "closes with up to 30 N.")],
+    ids=["not known", "weaker"],
+)
+def test_a_gripper_that_breaks_nothing_is_not_said_to(
+    outputs: Path, gripper_n: float, said: str
+) -> None:
+    design = read_design(outputs / "design.json")
+    other = replace(design, strength=replace(design.strength, gripper_n=gripper_n))
+    assert said in mounting(other)
+    assert "break a finger" not in mounting(other)
 
 
 def chapter(copied: Path, title: str) -> str:

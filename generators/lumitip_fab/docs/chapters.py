@@ -22,6 +22,7 @@ from lumitip_fab.docs.page import html_page
 from lumitip_fab.docs.protection import protection_note
 from lumitip_fab.docs.sheet import pdf_sheets
 from lumitip_fab.docs.spec_circuit import pulled_up
+from lumitip_fab.docs.wiring import listed
 from lumitip_fab.docs.wrapping import mask_facts, wrapping_steps
 from lumitip_fab.pipeline.artefact import Artefact, Files
 from lumitip_fab.text import as_written, passage
@@ -71,6 +72,7 @@ def _front(design: Design) -> str:
         lit_ma=sum(design.wiring.current_ma),
         wires=sum(len(cable.wires) for cable in design.cabling.cables),
         bolts=len(design.mount.bolt_u_mm),
+        rated_n=design.strength.rated_force_n,
         warm_up_min=WARM_UP_MIN,
         keys=_keys(design),
         nozzle_mm=design.slicing.nozzle_mm,
@@ -208,6 +210,7 @@ def _wired(design: Design, files: Files) -> str:
     weak = f"{pins}.\n\n" if (pins := pulled_up(design.wiring)) else ""
     return _text(
         "wired",
+        ties=", cable ties" if design.mount.lugs or design.holders else "",
         note=_included(files.text("wiring/cables.md")),
         weak=weak,
     )
@@ -223,7 +226,14 @@ def _printed(design: Design, files: Files) -> str:
     lines = files.text("print/printing.md").splitlines()
     made = [line for line in lines if design.mask.route == "tpu" or "| `mask/" not in line]
     note = _included("\n".join(made))
-    return _text("printed", note=note, moulds=heights(design))
+    return _text("printed", note=note, moulds=heights(design), filaments=_filaments(design))
+
+
+def _filaments(design: Design) -> str:
+    """Those that are printed by this manual: of a mask only where it is printed."""
+    of = design.slicing
+    used = [of.backing, of.rigid, of.mould] + [of.sheet] * (design.mask.route == "tpu")
+    return f"filament of {listed(list(dict.fromkeys(as_written(f.name) for f in used)))}"
 
 
 def _masked(design: Design, files: Files) -> Iterator[str]:

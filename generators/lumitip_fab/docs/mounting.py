@@ -74,7 +74,17 @@ def _work(design: Design) -> Iterator[str]:
         listed_ends = ", ".join(f"{wire.number} to {wire.signal}" for wire in ends)
         free = "".join(_text("supplied_free", wire=number) for number in own)
         yield _text("supplied", ends=listed_ends, free=free)
+    yield _text("limited", rated_n=design.strength.rated_force_n, greatest=_greatest(design))
     yield _text("moved")
+
+
+def _greatest(design: Design) -> str:
+    """How strongly the gripper closes, against what a finger bears."""
+    gripper_n = design.strength.gripper_n
+    if not gripper_n:
+        return _text("unknown")
+    stronger = gripper_n > design.strength.rated_force_n
+    return _text("stronger" if stronger else "weaker", gripper_n=gripper_n)
 
 
 def _flanged(design: Design, flange: Flange) -> Iterator[str]:

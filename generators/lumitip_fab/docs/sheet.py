@@ -43,6 +43,7 @@ _GAP = 6 * mm  # between pictures beside each other
 _PAIR_HIGH = 85 * mm
 _COLUMNS = ((1, 1), (2, 4), (3, 1000))
 """How many pictures of a paragraph stand in a row, up to how many."""
+_SHARES = (1.0, 0.9, 0.8)  # a step that then fits on its page is not broken
 _DPI = 200
 _BODY = ParagraphStyle(
     "body",
@@ -143,19 +144,25 @@ def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
 
 
 def _kept(tokens: list[Token], files: Files) -> list[Flowable]:
-    """A step with a drawing that fits on a page is not broken; another one begins below the step
-    before it."""
-    step = list(_flowables(tokens, files))
-    if not any(child.type == "image" for token in tokens for child in token.children or []):
-        return step
+    """A step with a drawing that fits on a page, if need be with smaller drawings, is not broken;
+    another one begins below the step before it."""
+    if any(child.type == "image" for token in tokens for child in token.children or []):
+        for share in _SHARES:
+            step = list(_flowables(tokens, files, share))
+            if _high(step) <= _PAGE_HIGH:
+                return [KeepTogether(step)]
+    return list(_flowables(tokens, files))
+
+
+def _high(step: list[Flowable]) -> float:
+    """Height of a step on one page."""
     measured = Canvas(io.BytesIO())
     heights = [piece.wrapOn(measured, _WIDTH, _PAGE_HIGH)[1] for piece in step]
-    gaps = [piece.getSpaceBefore() + piece.getSpaceAfter() for piece in step]
-    return [KeepTogether(step)] if sum(heights) + sum(gaps) <= _PAGE_HIGH else step
+    return sum(heights) + sum(piece.getSpaceBefore() + piece.getSpaceAfter() for piece in step)
 
 
-def _flowables(tokens: list[Token], files: Files) -> Iterator[Flowable]:
-    """The blocks of the text, one after the other."""
+def _flowables(tokens: list[Token], files: Files, share: float = 1.0) -> Iterator[Flowable]:
+    """The blocks of the text, one after the other, with drawings of a share of their size."""
     numbers: list[int | None] = []
     rows: list[list[Paragraph]] = []
     for at, token in enumerate(tokens):
@@ -180,7 +187,7 @@ def _flowables(tokens: list[Token], files: Files) -> Iterator[Flowable]:
             elif numbers:
                 yield Paragraph(_inline(token), _ITEM, bulletText=_bullet(numbers))
             else:
-                yield from _paragraph(token, files)
+                yield from _paragraph(token, files, share)
 
 
 def _bullet(numbers: list[int | None]) -> str:
@@ -195,7 +202,7 @@ def _heading(level: int, token: Token) -> Iterator[Flowable]:
     yield Paragraph(_inline(token), _HEADS[min(level, 4)])
 
 
-def _paragraph(token: Token, files: Files) -> Iterator[Flowable]:
+def _paragraph(token: Token, files: Files, share: float) -> Iterator[Flowable]:
     children = token.children or []
     pictures = [child for child in children if child.type == "image"]
     if not pictures:
@@ -205,7 +212,7 @@ def _paragraph(token: Token, files: Files) -> Iterator[Flowable]:
     high = _PAIR_HIGH if columns > 1 else _MOST_HIGH
     shown = [
         [
-            _picture(str(child.attrs["src"]), files, width, high),
+            _picture(str(child.attrs["src"]), files, width, high, share),
             Paragraph(escape(child.content), _SMALL),
         ]
         for child in pictures
@@ -216,13 +223,13 @@ def _paragraph(token: Token, files: Files) -> Iterator[Flowable]:
         yield Table(rows, [_WIDTH / columns] * columns, style=_BESIDE)
 
 
-def _picture(path: str, files: Files, width: float, high: float) -> Flowable:
+def _picture(path: str, files: Files, width: float, high: float, share: float) -> Flowable:
     """A drawing stays a drawing, at most in its own size; a picture of pixels stays one."""
     if path.endswith(".svg"):
         drawing = svg2rlg(io.BytesIO(files.read(path)))
         if drawing.width > _WIDE * _WIDTH:
             high = max(high, _WIDE_HIGH)
-        scale = min(1.0, width / drawing.width, high / drawing.height)
+        scale = share * min(1.0, width / drawing.width, high / drawing.height)
         drawing.scale(scale, scale)
         drawing.width, drawing.height = drawing.width * scale, drawing.height * scale
         drawing.hAlign = "CENTER"
@@ -230,7 +237,7 @@ def _picture(path: str, files: Files, width: float, high: float) -> Flowable:
         _letter(drawing)
         return drawing
     seen = PIL.Image.open(io.BytesIO(files.read(path)))
-    scale = min(width / seen.width, high / seen.height)
+    scale = share * min(width / seen.width, high / seen.height)
     wide, high = seen.width * scale, seen.height * scale
     # On the white of paper, and hardly finer than it is printed.
     small = seen.convert("RGBA").reduce(max(1, round(inch / scale / _DPI)))
