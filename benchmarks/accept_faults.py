@@ -4,14 +4,21 @@ import numpy as np
 
 from accept_fingers import Fault
 from lumitip.acceptance import findings
+from lumitip.grid import Floats
 from lumitip.layout import Layout
+from lumitip.twin import Model
 from lumitip_fab.tolerance.draws import Draws
 
 KINDS = (
     "none", "open", "dead LED", "short", "bridged", "swapped", "receiver mask", "emitter mask",
-    "gap", "silicone",
+    "gap", "silicone", "milky", "thickness",
 )  # fmt: skip
 """Half of the fingers have none of them."""
+NAMES = (
+    *KINDS[1:6], "receiver mask", "emitter mask", "gap", "silicone", "receiver thickness",
+    "emitter thickness", "holes",
+)  # fmt: skip
+"""Names of what may be out of tolerance."""
 NAMED = {
     "open": {"dark", "weak"},
     "dead LED": {"dark", "weak"},
@@ -23,9 +30,12 @@ _LIMITS = {
     "mask": (findings.MASK_MM, 1.8),
     "turn": (findings.MASK_DEG, 5.0),
     "gap": (findings.GAP_MM, 1.2),
-    "scatter": (findings.SCATTER, 0.6),
+    "clear": (findings.SCATTER[0], 0.6),
+    "milky": (findings.SCATTER[1], 0.6),
+    "thickness": (findings.THICK_MM, 0.6),
 }
-"""Faults are drawn evenly from the limit to this, in mm or as a share."""
+"""Faults are drawn evenly from the limit to this, in mm or as a share; not more than all light is
+scattered."""
 
 
 def drawn(layout: Layout, chance: np.random.Generator, share: float = 0.5) -> Fault:
@@ -49,14 +59,33 @@ def drawn(layout: Layout, chance: np.random.Generator, share: float = 0.5) -> Fa
     if kind == "gap":
         way = chance.choice([-1.0, 1.0])
         return Fault(kind, moved=(("gap", 0, way * chance.uniform(*_LIMITS["gap"])),))
-    return Fault(kind, moved=(("scatter", 0, -chance.uniform(*_LIMITS["scatter"])),))
+    if kind == "thickness":
+        way = chance.choice([-1.0, 1.0])
+        finger = int(chance.integers(2))
+        return Fault(kind, moved=(("silicone", finger, way * chance.uniform(*_LIMITS[kind])),))
+    if kind == "milky":
+        return Fault(kind, moved=(("scatter", 0, chance.uniform(*_LIMITS[kind])),))
+    return Fault(kind, moved=(("scatter", 0, -chance.uniform(*_LIMITS["clear"])),))
 
 
-def out_of_tolerance(draws: Draws, finger: int, fault: Fault) -> set[str]:
-    """Names of what is out of tolerance in a finger with its fault, by the limits of `verdict`."""
+def true_deviations(draws: Draws, finger: int, fault: Fault) -> dict[str, Floats]:
+    """Deviations of a finger with its fault, by name."""
     own = {name: rows[finger].copy() for name, rows in draws.items()}
     for name, entry, value in fault.moved:
         own[name][entry] += value
+    # No more than all light is scattered, and no less than none.
+    own["scatter"] = own["scatter"].clip(-Model.alpha, 1.0 - Model.alpha)
+    return own
+
+
+def out_of_tolerance(own: dict[str, Floats], fault: Fault, good_scatter: float = 0.0) -> set[str]:
+    """Names of what is out of tolerance in a finger with its fault, by the limits of `verdict`.
+
+    Args:
+        own: true deviations of the finger.
+        fault: its fault.
+        good_scatter: mean true deviation of the scattered share of good fingers.
+    """
     shift = own["mask_shift"].reshape(2, 2)
     found = {
         f"{end} mask"
@@ -66,8 +95,12 @@ def out_of_tolerance(draws: Draws, finger: int, fault: Fault) -> set[str]:
     }
     if abs(own["gap"][0]) > findings.GAP_MM:
         found.add("gap")
-    if abs(own["scatter"][0]) > findings.SCATTER:
+    less, more = findings.SCATTER
+    if not -less <= own["scatter"][0] - good_scatter <= more:
         found.add("silicone")
+    for number, end in enumerate(("emitter", "receiver")):
+        if abs(own["silicone"][number]) > findings.THICK_MM:
+            found.add(f"{end} thickness")
     if float(np.abs(own["hole"]).max()) > findings.HOLE_MM:
         found.add("holes")
     return found | ({fault.kind} if fault.cells else set())

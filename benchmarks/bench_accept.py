@@ -1,10 +1,11 @@
 """Acceptance of built fingers: faults that are caught and named, and false alarms.
 
 Half of the fingers have one injected fault; all have the spread of `tolerances.toml`, and the gauge
-lies 0.1 mm beside its place. A finger is out of tolerance if a true deviation is beyond the limits
-of `lumitip.acceptance.findings`, injected or not. It is named rightly if all of its faults are
-found, at their cells, and the first finding is one of them. The scattered share is compared with
-the mean of eight good fingers.
+lies 0.1 mm beside its place. A calliper measures the silicone within 0.05 mm. A finger is out of
+tolerance if a true deviation is beyond the limits of `lumitip.acceptance.findings`, injected or
+not. It is named rightly if all of its faults are found, at their cells, and the first finding is
+one of them. The scattered share is compared with the mean of eight good fingers: the measured share
+with their measured one, the true share with their true one.
 
 These fingers are drawn with the rays that the verdict is built on. `--second N` tries good fingers
 of the second optical model instead (`second_light`), which shares nothing with them.
@@ -22,12 +23,13 @@ from pathlib import Path
 
 import numpy as np
 
-from accept_faults import KINDS, NAMED, drawn, out_of_tolerance
+from accept_faults import NAMED, NAMES, drawn, out_of_tolerance, true_deviations
 from accept_fingers import Fault, Workshop
 from accept_second import second_frames
 from common import Goals
 from lumitip.acceptance.findings import Finding
 from lumitip.acceptance.gauge import Gauge
+from lumitip.acceptance.response import CALLIPER_MM
 from lumitip.acceptance.verdict import Judge, Verdict
 from lumitip.tasks.bench import workers
 from lumitip_fab.config.load import load
@@ -59,6 +61,7 @@ class Trials:
             self.judge(self._workshop.frames(good, number, Fault(), 0)).deviations
             for number in range(GOOD)
         ]
+        self._good_scatter = float(good["scatter"].mean())
         self._reference = {name: float(np.mean([of[name] for of in each])) for name in each[0]}
 
     def __call__(self, seed: int, number: int) -> "Tried":
@@ -67,8 +70,10 @@ class Trials:
         fault, own = drawn(self.layout, chance), int(chance.integers(2**32))
         draws = self._workshop.draws(1, own)
         frames = self._workshop.frames(draws, 0, fault, own)
-        verdict = self.judge(frames, self._reference)
-        return Tried.of(out_of_tolerance(draws, 0, fault), fault, verdict)
+        true = true_deviations(draws, 0, fault)
+        measured = true["silicone"][::-1] + CALLIPER_MM * chance.standard_normal(2)
+        verdict = self.judge(frames, self._reference, (float(measured[0]), float(measured[1])))
+        return Tried.of(out_of_tolerance(true, fault, self._good_scatter), fault, verdict)
 
     def second(self, seed: int, number: int) -> "Tried":
         """A good finger of the second optical model."""
@@ -128,7 +133,7 @@ def table(found: list[Tried], goals: Goals) -> None:
             caught[name] += bool(one.alarms)
             right[name] += one.right
     print(f"  {'out of tolerance':<18}{'fingers':>9}{'caught':>9}{'named rightly':>15}")
-    for name in (*KINDS[1:], "holes", "several"):
+    for name in (*NAMES, "several"):
         if fingers[name]:
             print(f"  {name:<18}{fingers[name]:>9}{caught[name]:>9}{right[name]:>15}")
     good = [one for one in found if not one.out]

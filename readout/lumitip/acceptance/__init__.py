@@ -3,6 +3,7 @@
 gauge      the gauge's placements, from `gauge.json`
 steps      the builder's steps, and the frames of each
 response   values that fingers with some deviations read of the gauge
+spread     how single parts, boards and drift change them
 fit        the deviations that explain the measured values
 places     swapped cells, from a sheet that moves
 findings   limits of what is judged

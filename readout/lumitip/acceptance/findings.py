@@ -8,9 +8,12 @@ MASK_MM, MASK_DEG = 1.0, 2.5
 measures it within 0.2 mm, since the board may lie beside its place, too."""
 GAP_MM = 0.6
 """Most that the skins may be from the gauge's gap: less closes on it, more is a bent finger."""
-SCATTER, SCATTER_ALONE = 0.4, 0.5
-"""Most by which the scattered share of the light may differ from that of good fingers, and without
-these from that of the drawing, which nobody has measured: a second optical model has 0.4 less."""
+SCATTER, SCATTER_ALONE = (0.4, 0.3), (0.5, 0.35)
+"""Most by which the scattered share of the light may be less, and more, than that of good fingers,
+and without these than that of the drawing, which nobody has measured: a second optical model has
+0.4 less. More than 0.4 above the drawing is impossible: all light is scattered then."""
+THICK_MM = 0.3
+"""Most by which the silicone may be thicker or thinner: six deviations of one that is cast well."""
 HOLE_MM = 0.5
 """Most by which the holes may be wider or narrower."""
 MISFIT = 12.0
@@ -36,7 +39,7 @@ class Finding:
     kind: str
     """`"dark"`, `"saturated"`, `"stuck"`, `"noisy"`, `"swapped"`, `"astray"`, `"weak"`, `"leak"`,
     `"odd"`, `"exposure"` for cells; `"receiver mask"`, `"emitter mask"`, `"gap"`, `"silicone"`,
-    `"holes"`, `"unexplained"` for the fingers."""
+    `"receiver thickness"`, `"emitter thickness"`, `"holes"`, `"unexplained"` for the fingers."""
     text: str
     """Observation and remedy, for the builder."""
     cells: tuple[int, ...] = ()

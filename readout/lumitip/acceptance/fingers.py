@@ -11,22 +11,31 @@ from lumitip.acceptance.findings import (
     MISFIT,
     SCATTER,
     SCATTER_ALONE,
+    THICK_MM,
     Finding,
 )
 from lumitip.acceptance.fit import Fitted
 from lumitip.acceptance.response import named
 
+_FINGERS = ("receiver", "emitter")
 
-def faults_of_fingers(fitted: Fitted, reference: Mapping[str, float] | None) -> list[Finding]:
+
+def faults_of_fingers(
+    fitted: Fitted,
+    reference: Mapping[str, float] | None,
+    thicker_mm: tuple[float, float] | None = None,
+) -> list[Finding]:
     """Findings of a fit, the largest first.
 
     Args:
         fitted: deviations.
         reference: mean deviations of good fingers, if there are any.
+        thicker_mm: silicone of receiver and emitter beyond the drawing, if it was measured.
     """
     of = named(fitted.deviations)
-    every = [_mask(finger, of) for finger in ("receiver", "emitter")]
+    every = [_mask(finger, of) for finger in _FINGERS]
     every += [_gap(of), _silicone(of, reference), _holes(of)]
+    every += [_thickness(*each) for each in zip(_FINGERS, thicker_mm or (), strict=False)]
     found = sorted((f for f in every if f.times_limit > 1.0), key=lambda f: -f.times_limit)
     if fitted.rms > MISFIT:
         text = (
@@ -58,13 +67,24 @@ def _gap(of: Mapping[str, float]) -> Finding:
 
 
 def _silicone(of: Mapping[str, float], reference: Mapping[str, float] | None) -> Finding:
-    good, most = ("good fingers", SCATTER) if reference else ("the drawing", SCATTER_ALONE)
+    good, limits = ("good fingers", SCATTER) if reference else ("the drawing", SCATTER_ALONE)
     off = of["scatter"] - (reference or {}).get("scatter", 0.0)
+    less, more = limits
     text = (
-        f"silicone: scattered share {off:+.2f} from {good}; at most {most:g}. Is it the silicone "
-        "of the bill, free of bubbles, and the film's back clear?"
+        f"silicone: scattered share {off:+.2f} from {good}, {'milky' if off > 0 else 'clear'}; "
+        f"-{less:g} to +{more:g} is allowed. Is it the silicone of the bill, free of bubbles, and "
+        "the film's back clear?"
     )
-    return Finding("silicone", text, times_limit=abs(off) / most)
+    return Finding("silicone", text, times_limit=max(-off / less, off / more))
+
+
+def _thickness(finger: str, thicker_mm: float) -> Finding:
+    text = (
+        f"{finger}'s silicone: {abs(thicker_mm):.2f} mm "
+        f"{'thicker' if thicker_mm > 0 else 'thinner'} than drawn; at most {THICK_MM:g} mm. "
+        "Did the mould's stops lie on the backing?"
+    )
+    return Finding(f"{finger} thickness", text, times_limit=abs(thicker_mm) / THICK_MM)
 
 
 def _holes(of: Mapping[str, float]) -> Finding:

@@ -15,7 +15,7 @@ from lumitip.health.swaps import Mask
 from lumitip.layout import Layout
 from lumitip.twin import Twin
 
-MOST_FRAMES = 150
+MOST_FRAMES = 100
 _LEAST_FRAMES = 20
 _MOVED, _LEAST_SHARE = 15.0, 0.8
 """Standard deviation of a cell that the sheet passes (counts), and share of the cells."""
@@ -68,7 +68,8 @@ class Places:
             own = np.diag(misfit)
             # Cells in other places bend the edge; without them the others show it as it is.
             trusted = usable & (own < _SUSPECT * np.median(own[usable]))
-            misfit = self._misfit(values, trusted)
+            if (trusted != usable).any():
+                misfit = self._misfit(values, trusted)
         if misfit is None:
             return Seen((), None, f"too few frames show the straight edge of a sheet. {_AGAIN}")
         return Seen(tuple(_exchanges(misfit, usable)), np.diag(misfit), None)

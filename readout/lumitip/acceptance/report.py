@@ -55,6 +55,8 @@ class Circumstances:
     versions: dict[str, str]
     reference: dict[str, float] | None = None
     """Mean deviations of good fingers, if the verdict was made with them."""
+    thicker_mm: tuple[float, float] | None = None
+    """Silicone of receiver and emitter beyond the drawing, if it was measured."""
 
 
 def write(
@@ -109,9 +111,13 @@ def prepare(folder: Path) -> None:
     trial.unlink()
 
 
-def _limit(name: str, reference: dict[str, float] | None) -> float | None:
+def _limit(name: str, value: float, circumstances: Circumstances) -> float | None:
     if name == "scatter":
-        return limits.SCATTER if reference else limits.SCATTER_ALONE
+        less, more = limits.SCATTER if circumstances.reference else limits.SCATTER_ALONE
+        off = value - (circumstances.reference or {}).get("scatter", 0.0)
+        return more if off > 0.0 else less
+    if name.endswith("_silicone"):
+        return limits.THICK_MM if circumstances.thicker_mm else None
     return _LIMITS.get(name)
 
 
@@ -172,13 +178,14 @@ def _record(
                 "unit": each.unit,
                 "value": _number(judged.deviations[each.name]),
                 "sd": _number(judged.sd[each.name]),
-                "limit": _limit(each.name, circumstances.reference),
+                "limit": _limit(each.name, judged.deviations[each.name], circumstances),
             }
             for each in DEVIATIONS
             if each.name in judged.deviations
         },
         "misfit_counts": _number(judged.misfit),
         "reference": circumstances.reference,
+        "thicker_mm": circumstances.thicker_mm,
         "calibration": {"empty": _listed(judged.empty), "dark": _listed(judged.dark)},
         "gauge_sha256": circumstances.gauge_sha256,
         "frames": {
@@ -227,7 +234,8 @@ def page(record: dict[str, Any], judged: Verdict, layout: Layout) -> str:
             "<h2>Deviations from the drawing</h2>",
             *_table(record["deviations"]),
             "<p>± is one standard deviation. Directions: seen on the receiver's face with the tip "
-            "up. Thickness of the silicone is hardly seen: measure it with a calliper.</p>",
+            "up.</p>",
+            f"<p>{_thickness(record['thicker_mm'])}</p>",
             *_reference(record["reference"]),
             "<h2>Made from</h2>",
             f"<p>Gauge <code>{record['gauge_sha256']}</code>; frames in {FRAMES}, "
@@ -236,6 +244,16 @@ def page(record: dict[str, Any], judged: Verdict, layout: Layout) -> str:
             + ".</p></html>",
             "",
         ]
+    )
+
+
+def _thickness(thicker_mm: Sequence[float] | None) -> str:
+    if thicker_mm is None:
+        return "Thickness of the silicone was not measured, and is not judged."
+    receiver, emitter = thicker_mm
+    return (
+        f"Silicone by calliper: receiver {receiver:+.2f} mm, emitter {emitter:+.2f} mm from the "
+        f"drawing; at most {limits.THICK_MM:g} mm."
     )
 
 

@@ -10,7 +10,7 @@ from lumitip.acceptance.gauge import Gauge, in_gap
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Model
-from lumitip.twin.built import Built, Light, Rays, turned
+from lumitip.twin.built import Built, Light, Piece, Rays, turned
 from lumitip.twin.optics import FULL, values_of_drive
 
 _LEAST_GAP_MM, _LEAST_DEPTH_MM, _LEAST_HOLE_MM = 0.5, 0.05, 0.5
@@ -39,7 +39,7 @@ DEVIATIONS = (
     Deviation("emitter_y", "emitter's mask towards the tip", "mm", 1.0, 0.1),
     Deviation("emitter_turn", "emitter's mask turned left", "deg", 5.0, 0.5),
     Deviation("gap", "gap beyond the gauge's", "mm", 1.5, 0.2),
-    Deviation("tilt", "gap grows towards the tip", "deg", 1.5, 0.3),
+    Deviation("tilt", "gap grows towards the tip", "deg", 1.0, 0.3),
     Deviation("scatter", "scattered share of the light", "", 0.4, 0.1),
     Deviation("receiver_silicone", "receiver's silicone thicker", "mm", 0.1, 0.14),
     Deviation("emitter_silicone", "emitter's silicone thicker", "mm", 0.1, 0.14),
@@ -51,15 +51,19 @@ DEVIATIONS = (
 NAMES = tuple(each.name for each in DEVIATIONS)
 PLAY_MM = 0.1
 """Standard deviation of a piece of the gauge across its line, of the play on its finger."""
+PLAY_DEG = 0.3
+"""That of its direction."""
+CALLIPER_MM = 0.05
+"""Standard deviation of a thickness that was measured with a calliper."""
 _STEPS = np.array([each.step for each in DEVIATIONS])
-_PLAY_STEP_MM = 0.05
+_PLAY_STEP = 0.05  # mm or degrees
 
 
 class Response:
     """The twin of fingers that are closed on each placement of a gauge.
 
     Arrays of deviations have the order of `DEVIATIONS`; after these comes the play of each
-    placement across its line, to the left (mm).
+    placement across its line, to the left (mm), and then its turn to the left (degrees).
     """
 
     def __init__(self, layout: Layout, gauge: Gauge) -> None:
@@ -71,14 +75,33 @@ class Response:
         """
         self._layout, self._gauge = layout, gauge
         self.model = Model.from_layout(layout, gauge.gap_mm)
-        self._rays = Rays(layout, self.model)
+        self.rays = Rays(layout, self.model)
         self.priors: Floats = np.array(
-            [each.prior for each in DEVIATIONS] + [PLAY_MM] * len(gauge.placements)
+            [each.prior for each in DEVIATIONS]
+            + [PLAY_MM] * len(gauge.placements)
+            + [PLAY_DEG] * len(gauge.placements)
         )
         """Standard deviations that are expected before the gauge is measured."""
         full = self._light(np.zeros(len(NAMES))).full
         self.drive: Floats = self.model.gain * full / full.max()
         """Photocurrent of each cell in the empty grasp of the drawing, see `values_of_drive`."""
+
+    def likely(self, thicker_mm: tuple[float, float] | None) -> tuple[Floats, Floats]:
+        """Deviations that are expected before the gauge is measured, and their standard deviations.
+
+        Args:
+            thicker_mm: silicone of receiver and emitter beyond the drawing, if it was measured.
+        """
+        expected, priors = np.zeros(len(self.priors)), self.priors.copy()
+        if thicker_mm is not None:
+            at = [NAMES.index(f"{end}_silicone") for end in ("receiver", "emitter")]
+            expected[at], priors[at] = thicker_mm, CALLIPER_MM
+        return expected, priors
+
+    @property
+    def scatter_range(self) -> tuple[float, float]:
+        """Least and most deviation of the scattered share: beyond them nothing changes."""
+        return _LEAST_SCATTER - self.model.alpha, 1.0 - self.model.alpha
 
     def values(self, deviations: Floats, drive: Floats) -> Floats:
         """Values without noise, 255 is the empty grasp, shape `(placements, cells)`.
@@ -95,7 +118,7 @@ class Response:
         columns = []
         for number in range(len(deviations)):
             own = number < len(NAMES)
-            step = _STEPS[number] if own else _PLAY_STEP_MM
+            step = _STEPS[number] if own else _PLAY_STEP
             either = []
             for sign in (1.0, -1.0):
                 moved = deviations.copy()
@@ -104,20 +127,27 @@ class Response:
             columns.append((either[0] - either[1]) / (2.0 * step))
         return np.stack(columns, axis=-1)
 
-    def _read(self, deviations: Floats, light: Light, drive: Floats) -> Floats:
+    def pieces(self, deviations: Floats) -> list[Piece]:
+        """The gauge in each placement, between fingers with these deviations."""
         of = named(deviations[: len(NAMES)])
-        empty = np.maximum(values_of_drive(drive, self.model), 1.0)
-        rows = []
-        for placement, play_mm in zip(
-            self._gauge.placements, deviations[len(NAMES) :].tolist(), strict=True
-        ):
+        placed = []
+        plays = deviations[len(NAMES) :].reshape(2, -1).T.tolist()
+        for placement, (play_mm, turn_deg) in zip(self._gauge.placements, plays, strict=True):
             piece = in_gap(placement, self._gauge, self._gap_mm(deviations))
             left_mm = play_mm
             if placement.on == "emitter":
                 angle = np.radians(piece.angle_deg)
                 left_mm += of["finger_y"] * np.cos(angle) - of["finger_x"] * np.sin(angle)
-            piece = replace(piece, offset_mm=piece.offset_mm + float(left_mm))
-            rows.append(values_of_drive(drive * light.behind(piece), self.model))
+            offset_mm, angle_deg = piece.offset_mm + float(left_mm), piece.angle_deg + turn_deg
+            placed.append(replace(piece, offset_mm=offset_mm, angle_deg=angle_deg))
+        return placed
+
+    def _read(self, deviations: Floats, light: Light, drive: Floats) -> Floats:
+        empty = np.maximum(values_of_drive(drive, self.model), 1.0)
+        rows = [
+            values_of_drive(drive * light.behind(piece), self.model)
+            for piece in self.pieces(deviations)
+        ]
         return np.asarray(np.array(rows) * (FULL / empty))
 
     @cached_property
@@ -129,6 +159,10 @@ class Response:
         return max(self._gauge.gap_mm + float(deviations[NAMES.index("gap")]), _LEAST_GAP_MM)
 
     def _light(self, deviations: Floats) -> Light:
+        return self.rays.of(self.built(deviations))
+
+    def built(self, deviations: Floats) -> Built:
+        """Fingers with these deviations."""
         of = named(deviations[: len(NAMES)])
         model, cells = self.model, np.stack([self._layout.x_mm, self._layout.y_mm])
         each = np.ones(cells.shape[1])
@@ -147,23 +181,21 @@ class Response:
         tilted = np.tan(np.radians(of["tilt"])) * self._layout.y_mm
         half = np.maximum(self._gap_mm(deviations) + tilted, _LEAST_GAP_MM) / 2.0
         holes = np.maximum(model.hole_mm * self._layout.hole_share + of["hole"], _LEAST_HOLE_MM)
-        return self._rays.of(
-            Built(
-                led_mm=cells + beside,
-                emitter_hole_mm=masks[0] + beside,
-                receiver_hole_mm=masks[1],
-                detector_mm=cells,
-                hole_mm=np.stack([holes, holes]),
-                led_depth_mm=depths[0],
-                detector_depth_mm=depths[1],
-                led_gap_mm=half,
-                detector_gap_mm=half,
-                alpha=float(np.clip(model.alpha + of["scatter"], _LEAST_SCATTER, 1.0)),
-                led=each,
-                detector=each,
-                drift=each,
-                exposure=1.0,
-            )
+        return Built(
+            led_mm=cells + beside,
+            emitter_hole_mm=masks[0] + beside,
+            receiver_hole_mm=masks[1],
+            detector_mm=cells,
+            hole_mm=np.stack([holes, holes]),
+            led_depth_mm=depths[0],
+            detector_depth_mm=depths[1],
+            led_gap_mm=half,
+            detector_gap_mm=half,
+            alpha=float(np.clip(model.alpha + of["scatter"], _LEAST_SCATTER, 1.0)),
+            led=each,
+            detector=each,
+            drift=each,
+            exposure=1.0,
         )
 
 

@@ -82,13 +82,20 @@ class Judge:
         self._response = Response(layout, gauge)
         self._places = Places(layout, gauge.gap_mm)
 
-    def __call__(self, frames: Frames, reference: Mapping[str, float] | None = None) -> Verdict:
+    def __call__(
+        self,
+        frames: Frames,
+        reference: Mapping[str, float] | None = None,
+        thicker_mm: tuple[float, float] | None = None,
+    ) -> Verdict:
         """Judge a pair of fingers by its frames.
 
         Args:
             frames: of all steps.
             reference: mean deviations of fingers that are known to be good, with whose scattered
                 share this one is compared; by default that of the drawing.
+            thicker_mm: silicone of receiver and emitter beyond the drawing, as a calliper measures
+                it; without it thickness is not judged.
 
         Raises:
             ArgumentError: if the frames are not of these cells and placements, or not finite.
@@ -102,14 +109,14 @@ class Judge:
         usable = self._usable(findings)
         fitted = None
         if usable.sum() >= LEAST_CELLS and not any(f.cells == () for f in findings):
-            fitted = self._fit(frames, usable)
+            fitted = self._fit(frames, usable, thicker_mm)
             odd = odd_cells(np.sqrt(np.mean(fitted.residual**2, axis=0)), ODD, usable)
             # If many cells misfit, it is no fault of cells.
             if 0 < len(odd) <= usable.sum() // 4:
                 findings += odd
                 usable = self._usable(findings)
-                fitted = self._fit(frames, usable)
-            whole = faults_of_fingers(fitted, reference)
+                fitted = self._fit(frames, usable, thicker_mm)
+            whole = faults_of_fingers(fitted, reference, thicker_mm)
             if not whole and places.misfit is not None:
                 findings += odd_cells(places.misfit, ODD_MOVING, usable)
             findings = sorted([*findings, *whole], key=_is_consequence)
@@ -131,9 +138,10 @@ class Judge:
         every: Mask = np.ones(len(self._layout), bool)
         return self._places(_calibrated(moving, frames), every).unseen
 
-    def _fit(self, frames: Frames, usable: Mask) -> Fitted:
+    def _fit(self, frames: Frames, usable: Mask, thicker_mm: tuple[float, float] | None) -> Fitted:
         values = np.array([_calibrated(level(part), frames) for part in frames.gauge])
-        return fit(self._response, values, level(frames.empty).astype(np.float64), usable)
+        empty = level(frames.empty).astype(np.float64)
+        return fit(self._response, values, empty, usable, thicker_mm)
 
     def _usable(self, findings: list[Finding]) -> Mask:
         """Cells without a finding, shape `(cells,)`."""

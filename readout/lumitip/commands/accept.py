@@ -20,6 +20,7 @@ NOT_ACCEPTED = 1
 STEADY = 100
 """Frames of a steady step: a noise of 1.5 of 255 averages to 0.15."""
 _LEAST_MOVING = 50
+_MOST_THICKER_MM = 2.0
 _EMPTY = (
     "close the fingers on the gauge; then take it out, and leave the fingers as far apart, with "
     "nothing between them"
@@ -33,10 +34,10 @@ def run(options: argparse.Namespace) -> int:
     are not accepted.
 
     Raises:
-        LumitipError: if the gauge is not that of the fingertip, there is no keyboard, or the
-            report cannot be written.
+        LumitipError: if the gauge is not that of the fingertip, a thickness is out of range, there
+            is no keyboard, or the report cannot be written.
     """
-    gauge = Gauge.load(options.gauge)
+    gauge, thicker_mm = Gauge.load(options.gauge), _thicker_mm(options.thicker_mm)
     began = datetime.now().astimezone().isoformat(timespec="seconds")
     with open_fingertip(options, calibrated=False) as tip:
         layout, device_id = tip.layout, tip.device_id
@@ -47,12 +48,16 @@ def run(options: argparse.Namespace) -> int:
         try:
             prepare(options.out)
             frames = _protocol(tip, gauge, judge, options)
-            judged = judge(frames, reference)
-            circumstances = Circumstances(device_id, began, gauge.sha256, versions(), reference)
+            judged = judge(frames, reference, thicker_mm)
+            circumstances = Circumstances(
+                device_id, began, gauge.sha256, versions(), reference, thicker_mm
+            )
             written = write(options.out, frames, judged, layout, circumstances)
         except OSError as error:
             raise LumitipError(f"{options.out}: the report cannot be written: {error}") from error
     _print(judged)
+    if thicker_mm is None:
+        print("  thickness of the silicone was not judged: measure it, and use --thicker-mm")
     print(f"report: {written[0]}")
     if judged.accepted:
         blank = Calibration(device_id, layout.design_hash)
@@ -79,6 +84,19 @@ def _protocol(tip: Fingertip, gauge: Gauge, judge: Judge, options: argparse.Name
         print(f"  once more: {unseen}")
     parts = [steady(4 + n, _put(of)) for n, of in enumerate(gauge.placements)]
     return Frames(empty, sheet, moving, tuple(parts))
+
+
+def _thicker_mm(values: list[float] | None) -> tuple[float, float] | None:
+    if values is None:
+        return None
+    receiver, emitter = values
+    for value in values:
+        if not abs(value) <= _MOST_THICKER_MM:
+            raise LumitipError(
+                f"--thicker-mm has {value:g}; -{_MOST_THICKER_MM:g} to {_MOST_THICKER_MM:g} is "
+                "allowed. It is the measured thickness less the drawn one"
+            )
+    return receiver, emitter
 
 
 def _put(placement: Placement) -> str:

@@ -112,6 +112,11 @@ class Rays:
         self._deep = np.repeat([[1, 1, 0, 0], [1, 0, 1, 0]], sizes, axis=1)
         self._count = np.repeat(sizes, sizes)
 
+    @property
+    def pairs(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Cell and LED of each pair within reach, sorted by cell."""
+        return self._cell, self._led
+
     def of(self, built: Built) -> "Light":
         """The light of a built pair of fingers."""
         model, cell, led = self._model, self._cell, self._led
@@ -198,6 +203,17 @@ class Light:
 
     def behind(self, piece: Piece) -> Floats:
         """Share of it that passes a piece, shape `(cells,)`."""
+        lost = np.add.reduceat(self._taken(piece).astype(np.float64), self._begin[:-1])
+        return np.asarray(1.0 - lost / self.full)
+
+    def passed(self, piece: Piece | None) -> Floats:
+        """Light of each pair of an LED and a cell that passes a piece, or nothing, shape
+        `(pairs,)`."""
+        weight = self._weight if piece is None else self._weight - self._taken(piece)
+        return np.asarray(weight.reshape(self._gap_mm.size, -1).sum(axis=1, dtype=np.float64))
+
+    def _taken(self, piece: Piece) -> Singles:
+        """Light of each ray that a piece takes."""
         angle = np.radians(piece.angle_deg)
         across = np.array([-np.sin(angle), np.cos(angle)], np.float32)
         slope = across @ self._slope
@@ -210,9 +226,8 @@ class Light:
         else:
             beside = np.maximum(np.minimum(low, high), -np.maximum(low, high))
             outside = beside - np.float32(piece.width_mm / 2.0)
-        taken = np.clip(0.5 - outside / np.float32(PIXEL_MM), 0.0, 1.0) * self._weight
-        lost = np.add.reduceat(taken.astype(np.float64), self._begin[:-1])
-        return np.asarray(1.0 - lost / self.full)
+        inside = np.clip(0.5 - outside / np.float32(PIXEL_MM), 0.0, 1.0)
+        return np.asarray(inside * self._weight, np.float32)
 
 
 def turned(places_mm: Floats, angle_deg: float) -> Floats:

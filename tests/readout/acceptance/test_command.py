@@ -104,6 +104,7 @@ def test_fingers_that_are_not_accepted_are_not_calibrated(
     assert report["deviations"]["receiver_x"]["value"] == pytest.approx(1.4, abs=0.15)
     assert Calibration.kept(report["device_id"], LAYOUT.design_hash, 32).empty is None
     assert "not accepted" in (out / "acceptance.html").read_text()
+    assert "was not measured" in (out / "acceptance.html").read_text()
     command = arguments(gauge_file, tmp_path / "next")
     for other in (gauge_file, out / "acceptance.json"):
         assert main([*command, "--reference", str(other)]) == 2
@@ -111,6 +112,29 @@ def test_fingers_that_are_not_accepted_are_not_calibrated(
     assert not (tmp_path / "next").exists()
     assert main(arguments(gauge_file, out)) == 2
     assert "has a report already. Choose another folder" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_a_measured_thickness_is_judged_and_reported(
+    gauge_file: Path, tmp_path: Path, bench: Bench, monkeypatch, capsys
+) -> None:
+    Hands(monkeypatch, bench, emitter_silicone=-0.4)
+    out = tmp_path / "out"
+    assert main([*arguments(gauge_file, out), "--thicker-mm", "0.05", "-0.4"]) == 1
+    assert "emitter's silicone: 0.40 mm thinner than drawn" in capsys.readouterr().out
+    report = json.loads((out / "acceptance.json").read_text())
+    assert report["thicker_mm"] == [0.05, -0.4]
+    assert report["deviations"]["emitter_silicone"]["limit"] == 0.3
+    assert "receiver +0.05 mm, emitter -0.40 mm" in (out / "acceptance.html").read_text()
+
+
+@pytest.mark.parametrize("value", ["nan", "31"])
+def test_a_thickness_out_of_range_is_refused(
+    gauge_file: Path, tmp_path: Path, capsys, value: str
+) -> None:
+    command = [*arguments(gauge_file, tmp_path / "out"), "--thicker-mm", "0", value]
+    assert main(command) == 2
+    assert f"--thicker-mm has {value}; -2 to 2 is allowed" in capsys.readouterr().err
 
 
 def test_the_gauge_of_another_design_is_refused_before_the_first_step(
@@ -148,7 +172,7 @@ def test_names_from_outside_are_no_markup(bench: Bench, judge: Judge) -> None:
     made = Circumstances("<b>&", "2026-11-27", "", {"lumitip": "<i>"})
     record = {
         **{"device_id": "<b>&", "date": made.date, "design_hash": "0", "deviations": {}},
-        **{"reference": None, "gauge_sha256": "", "frames": {"sha256": ""}},
+        **{"reference": None, "thicker_mm": None, "gauge_sha256": "", "frames": {"sha256": ""}},
         "versions": made.versions,
     }
     text = page(record, judged, LAYOUT)

@@ -1,11 +1,16 @@
 """Deviations are found again from what the gauge shows."""
 
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from acceptance_frames import Bench
 from lumitip.acceptance.gauge import Gauge
 from lumitip.acceptance.response import NAMES, Response
+from lumitip.acceptance.spread import DRIFT, LED, PLACEMENT_MM, spread
 from lumitip.acceptance.verdict import Judge
 from lumitip.links.twin import published_layout
 from lumitip.twin import HalfPlane, Misregistration, Model, Twin
@@ -43,6 +48,42 @@ def test_a_single_cell_that_misfits_does_not_bend_the_result(bench: Bench, judge
     found = judge(frames)
     assert [(f.kind, f.cells) for f in found.findings] == [("odd", (13,))]
     assert found.deviations["receiver_x"] == pytest.approx(0.5, abs=0.12)
+
+
+@pytest.mark.slow
+def test_large_deviations_are_found_from_other_starts(bench: Bench, judge: Judge) -> None:
+    off = {"emitter_x": 1.5, "emitter_y": 0.9, "scatter": -0.3}
+    found = judge(bench.frames(off))
+    for name, value in off.items():
+        assert found.deviations[name] == pytest.approx(value, abs=0.15)
+
+
+def test_the_spread_of_parts_is_that_of_new_fingers(gauge: Gauge) -> None:
+    """Of an LED and a detector, computed with single parts moved."""
+    response = Response(published_layout(), gauge)
+    off, cells = np.zeros(len(response.priors)), len(published_layout())
+    rows = spread(response, off, response.drive)
+    assert rows.shape == (6 * cells + 4, len(gauge.placements) * cells)
+    pair = response.built(off)
+    full = response.rays.of(pair).full
+    each = np.eye(cells)
+    led = replace(pair, led=pair.led + LED * each[12])
+    way = np.stack([PLACEMENT_MM * each[12], 0.0 * each[12]])
+    detector = replace(pair, detector_mm=pair.detector_mm + way)
+    for row, moved in ((12, led), (2 * cells + 1 + 12, detector)):
+        light = response.rays.of(moved)
+        change = response._read(off, light, response.drive * light.full / full)
+        change -= response.values(off, response.drive)
+        assert rows[row] == pytest.approx(change.ravel(), abs=0.005)
+        assert np.abs(rows[row]).max() > 0.05
+
+
+def test_spreads_are_those_of_the_catalogue() -> None:
+    folder = Path(__file__).parents[3] / "design" / "parts"
+    of = tomllib.loads((folder / "tolerances.toml").read_text(encoding="utf-8"))
+    assert of["led"]["spread"] == LED
+    assert of["placement"]["spread"] == PLACEMENT_MM
+    assert of["drift"]["spread"] / 2.0 == DRIFT
 
 
 def test_the_values_of_a_thin_edge_are_those_of_the_twin(gauge: Gauge) -> None:

@@ -67,6 +67,31 @@ def test_scatter_is_compared_with_good_fingers(bench: Bench, judge: Judge) -> No
     assert judge(frames, {"scatter": -0.4}).accepted
 
 
+@pytest.mark.slow
+def test_milky_silicone_is_named(bench: Bench, judge: Judge) -> None:
+    [finding] = judge(bench.frames({"scatter": 0.38}), {"scatter": 0.0}).findings
+    assert finding.kind == "silicone"
+    assert "milky" in finding.text
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("thicker_mm", "kinds_of"),
+    [((0.4, 0.0), ["receiver thickness"]), ((0.0, -0.5), ["emitter thickness"]), ((0.2, -0.2), [])],
+)
+def test_thickness_is_judged_where_it_was_measured(
+    bench: Bench, judge: Judge, thicker_mm: tuple[float, float], kinds_of: list[str]
+) -> None:
+    off = dict(zip(("receiver_silicone", "emitter_silicone"), thicker_mm, strict=True))
+    frames = bench.frames(off)
+    assert kinds(judge(frames, None, thicker_mm)) == kinds_of
+    # What was measured is not fitted as something else.
+    found = judge(frames, None, thicker_mm).deviations
+    assert abs(found["scatter"]) < 0.05
+    assert abs(found["hole"]) < 0.1
+    assert "thickness" not in " ".join(kinds(judge(frames)))
+
+
 @pytest.mark.parametrize("pair", [(0, 1), (5, 20)])
 def test_swapped_cells_are_named(bench: Bench, judge: Judge, pair: tuple[int, int]) -> None:
     def swap(frames: np.ndarray) -> None:
