@@ -81,6 +81,21 @@ def panelled(once: Once) -> Path:
     return once("panelled", lambda out: write_panelled(DESIGN, out))
 
 
+@pytest.fixture(scope="session")
+def cluster() -> Iterator[str]:
+    """A Dask scheduler with two worker processes; its address."""
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2,
+        threads_per_worker=1,
+        processes=True,
+        dashboard_address=None,
+        host="127.0.0.1",
+        protocol="tcp",
+    ) as running:
+        yield str(running.scheduler_address)
+
+
 @pytest.fixture
 def damaged(outputs: Path, tmp_path: Path) -> Path:
     """A copy of the published design's files, to damage."""

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -124,21 +124,6 @@ def test_a_killed_study_goes_on(
     study = explored(out)
     assert study.evaluated == 6 - known
     assert study.designs == studied[1].designs
-
-
-@pytest.fixture(scope="module")
-def cluster() -> Iterator[str]:
-    """A Dask scheduler with two worker processes; its address."""
-    distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(
-        n_workers=2,
-        threads_per_worker=1,
-        processes=True,
-        dashboard_address=None,
-        host="127.0.0.1",
-        protocol="tcp",
-    ) as running:
-        yield str(running.scheduler_address)
 
 
 @pytest.mark.slow
