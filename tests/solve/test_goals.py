@@ -52,8 +52,14 @@ def test_the_example_is_valid() -> None:
 
 FAULTS = {
     ("edge_mm = 0.1", "edge_mm = 1.5"): (3, "less than 1 is allowed"),
-    ("edge_mm = 0.1", "gaps_mm = [2.0]"): (2, "without an error"),
+    ("edge_mm = 0.1", "gaps_mm = [2.0]"): (2, "goals is without an error"),
     ("edge_mm = 0.1", "cable_mm = 0.1\ngaps_mm = [2.0]"): (2, "fits no gap"),
+    ("edge_mm = 0.1", "edge_mm = 0.1\ngaps_mm = [2, 2.0]"): (2, "goals: gaps_mm has 2 mm twice"),
+    ("edge_mm = 0.1", "edge_mm = 0.1\ncables_mm = [3, 3.0]"): (2, "cables_mm has 3 mm twice"),
+    ("edge_mm = 0.1", "cable_mm = 0.1\ncables_mm = []"): (2, "cable_mm is set, but cables_mm is"),
+    ("edge_mm = 0.1", "edge_mm = nan"): (3, "goals.edge_mm is nan; a finite number is needed"),
+    ("cost = 60.0", "cost = nan"): (5, "limits.cost is nan; more than 0 is needed"),
+    ("[5, 6.0]", "[6, 6.0]"): (11, "vary.grid.pitch_mm has one value, 6.0; add another"),
     ("[5, 6.0]", "[true, 6.0]"): (11, "vary.grid.pitch_mm"),
     ("[5, 6.0]", f"[1{'0' * 400}, 6.0]"): (11, "vary.grid.pitch_mm"),
     ("from = 2.0", "from = true"): (9, "vary.mask.hole_mm"),

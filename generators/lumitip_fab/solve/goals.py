@@ -10,7 +10,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from lumitip_fab.catalogue.record import Strict
 from lumitip_fab.config.load import Input, load
-from lumitip_fab.config.messages import problems_of, shown_path, unknown_name
+from lumitip_fab.config.messages import brief, problems_of, shown_path, unknown_name
 from lumitip_fab.config.source import Source, flat, read_toml
 from lumitip_fab.errors import InputError, Problem
 from lumitip_fab.explore.run import without_price
@@ -55,12 +55,20 @@ class Targets(Strict):
     @model_validator(mode="after")
     def _every_goal_can_be_tried(self) -> "Targets":
         if not self.errors:
-            raise ValueError("goals is without an error; write at least edge_mm or cable_mm")
-        thick = [d for d in self.cables_mm if d > max(self.gaps_mm)]
-        if thick and {"cable_mm", "cable_deg"} & self.errors.keys():
+            raise ValueError("is without an error; write at least edge_mm or cable_mm")
+        for name, values in (("gaps_mm", self.gaps_mm), ("cables_mm", self.cables_mm)):
+            if twice := [value for value in values if values.count(value) > 1]:
+                raise ValueError(f"{name} has {twice[0]:g} mm twice; write it once")
+        of_cables = [name for name in ("cable_mm", "cable_deg") if name in self.errors]
+        if of_cables and not self.cables_mm:
             raise ValueError(
-                f"goals.cables_mm has {thick[0]:g} mm, which fits no gap of goals.gaps_mm; add a "
-                "gap or remove it"
+                f"{of_cables[0]} is set, but cables_mm is empty; add a diameter, or remove the goal"
+            )
+        thick = [d for d in self.cables_mm if d > max(self.gaps_mm)]
+        if thick and of_cables:
+            raise ValueError(
+                f"cables_mm has {thick[0]:g} mm, which fits no gap of gaps_mm; add a gap or remove "
+                "it"
             )
         return self
 
@@ -225,6 +233,9 @@ def _axes(
         else:
             axis = Axis(field, as_numbers_of(base, field, values))
             found = not_allowed(base, axis) + without_effect(base, field)
+            if len(axis.values) == 1:
+                text = f"has one value, {brief(axis.values[0])}; add another, or move it to [fixed]"
+                found.append(Problem("", 0, field, text))
             faults += _placed(source, name, found)
             axes.append(axis)
     return tuple(axes), faults
