@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -123,7 +124,21 @@ def test_limits_that_no_design_keeps_are_an_answer(
     assert main(["design", str(file), "--out", str(tmp_path / "out")]) == 1
     printed = " ".join(capsys.readouterr().out.split())
     assert "No design keeps all limits" in printed
-    assert "% beyond one of them" in printed
+    assert re.search(r"cost is 50\.\d+, the limit 20\. Relax limits, or vary more", printed)
+    assert not list((tmp_path / "out").glob("point-*.toml"))
+
+
+def test_designs_that_are_all_refused_are_an_answer(
+    tmp_path: Path, design_dir: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = written(tmp_path, design_dir, "cost = 60.0", 2.25, "")
+    text = file.read_text().replace(
+        "from = 2.0, to = 2.25, step = 0.25", "from = 5.9, to = 6.0, step = 0.1"
+    )
+    file.write_text(text)
+    assert main(["design", str(file), "--out", str(tmp_path / "out")]) == 1
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "Every design is refused: mask.hole_mm is 5.9" in printed
     assert not list((tmp_path / "out").glob("point-*.toml"))
 
 

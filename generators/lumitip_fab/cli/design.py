@@ -100,10 +100,15 @@ def print_study(found: Study, console: Console) -> None:
         + f"; gaps {_listed(targets.gaps_mm)} mm, cables {_listed(targets.cables_mm)} mm"
     )
     if nearest := found.nearest:
-        over = max(excesses(nearest.figures, found.task.limits))
+        limits = found.task.limits
+        over = ", ".join(
+            f"{name} is {nearest.figures[name]:.4g}, the limit {getattr(limits, name):g}"
+            for name, share in excesses(nearest.figures, limits).items()
+            if share > 0.0
+        )
         console.print(
-            f"No design keeps all limits. The nearest, {dict(nearest.changes)}, is "
-            f"{100 * over:.0f} % beyond one of them. Relax limits, or vary more parameters.",
+            f"No design keeps all limits. Of the nearest, {dict(nearest.changes)}, {over}. Relax "
+            "limits, or vary more parameters.",
             style="bold red",
         )
     elif not search.front:

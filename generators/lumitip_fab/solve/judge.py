@@ -95,11 +95,10 @@ def drive(design: Design) -> float:
     return float(np.mean(design.wiring.current_ma)) * design.layout.optics.pull_up_ohm
 
 
-def excesses(figures: dict[str, float], limits: Limits) -> tuple[float, ...]:
+def excesses(figures: dict[str, float], limits: Limits) -> dict[str, float]:
     """How far a design is beyond each limit, as a share of it; 0 or less where it keeps it."""
-    most = ("cost", "current_ma", "cells")
-    least = ("width_mm", "length_mm")
-    return (
-        *(figures[n] / getattr(limits, n) - 1.0 for n in most if getattr(limits, n) < math.inf),
-        *(1.0 - figures[n] / getattr(limits, n) for n in least if getattr(limits, n) > 0.0),
-    )
+    most = [n for n in ("cost", "current_ma", "cells") if getattr(limits, n) < math.inf]
+    least = [n for n in ("width_mm", "length_mm") if getattr(limits, n) > 0.0]
+    return {n: figures[n] / getattr(limits, n) - 1.0 for n in most} | {
+        n: 1.0 - figures[n] / getattr(limits, n) for n in least
+    }

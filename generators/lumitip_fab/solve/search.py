@@ -1,4 +1,4 @@
-"""The search: all designs if they are few, else NSGA-II over the parameters that may move."""
+"""The search: all designs if they are few, else NSGA-II, and descents from what it found."""
 
 import itertools
 from collections.abc import Callable, Iterator, Sequence
@@ -12,44 +12,22 @@ from lumitip.errors import how_to_install
 from lumitip_fab.derive import derive
 from lumitip_fab.errors import BuildError, InputError, Problem
 from lumitip_fab.explore.evaluate import Journal, Record
-from lumitip_fab.explore.front import undominated
 from lumitip_fab.explore.pool import pool
 from lumitip_fab.explore.vary import Changes
 from lumitip_fab.pipeline.build import locked
 from lumitip_fab.solve.goals import Task
 from lumitip_fab.solve.judge import OBJECTIVES, Job, drive, excesses, judge
+from lumitip_fab.solve.judged import Judged, Point, front
 from lumitip_fab.solve.ranges import is_number
+from lumitip_fab.solve.refine import refine
 
 FEWEST, POPULATION = 8, 24
 """Designs of a generation: of a short search, and of a long one."""
+GENETIC = 0.45
+"""Share of the designs before the descents, which begin where the genetic search is."""
+_END = object()
 _REFUSED = 10.0  # excess of a design that is refused
 Progress = Callable[[int, int], object]
-Point = tuple[int, ...]
-"""Number of the value on each axis."""
-
-
-@dataclass(frozen=True)
-class Judged:
-    """One design of a search."""
-
-    changes: Changes
-    columns: tuple[int, ...]
-    """Cells of each column of its grid."""
-    figures: dict[str, float]
-    """Empty if it is refused."""
-    refused: tuple[str, ...]
-    excess: float
-    """Sum of the shares by which it is beyond limits."""
-
-    @property
-    def allowed(self) -> bool:
-        """Whether it keeps all limits."""
-        return bool(self.figures) and self.excess <= 0.0
-
-    @property
-    def objectives(self) -> tuple[float, ...]:
-        """Figures to minimise."""
-        return tuple(self.figures[name] for name in OBJECTIVES)
 
 
 @dataclass(frozen=True)
@@ -65,10 +43,8 @@ class Search:
 
     @property
     def front(self) -> tuple[Judged, ...]:
-        """Allowed designs of which no other is as good in all objectives and better in one, the
-        least error first; of equal designs the first."""
-        allowed = {one.objectives: one for one in reversed(self.designs) if one.allowed}
-        return tuple(allowed[own] for own in sorted(undominated(allowed)))
+        """See `judged.front`."""
+        return front(self.designs)
 
 
 def search(
@@ -105,10 +81,17 @@ def search(
             for begin in range(0, len(every), POPULATION):
                 judges(every[begin : begin + POPULATION])
         else:
-            for _ in _generations(task, designs, seed, judges):
-                if len(judges.designs) >= designs:
-                    break
+            generations = _generations(task, designs, seed, judges)
+            _until(round(GENETIC * designs), generations, judges)
+            refine(task, judges.designs, judges, designs)
+            _until(designs, generations, judges)
     return Search(base, tuple(judges.designs.values()), complete, judges.evaluated)
+
+
+def _until(designs: int, generations: Iterator[None], judges: "_Judges") -> None:
+    """Judge generations until there are so many designs; the last is finished."""
+    while len(judges.designs) < designs and next(generations, _END) is not _END:
+        pass
 
 
 class _Judges:
@@ -160,7 +143,8 @@ def _changes(task: Task, point: Point) -> Changes:
 
 def _judged(task: Task, job: Job, record: Record) -> Judged:
     figures = record.get("figures", {})
-    excess = sum(max(of, 0.0) for of in excesses(figures, task.limits)) if figures else _REFUSED
+    beyond = excesses(figures, task.limits).values() if figures else (_REFUSED,)
+    excess = sum(max(of, 0.0) for of in beyond)
     columns = job.config.parameters.grid.columns
     return Judged(job.changes, columns, figures, tuple(record.get("refused", ())), excess)
 

@@ -17,7 +17,8 @@ from lumitip_fab.explore.evaluate import rounded
 from lumitip_fab.solve import confirm
 from lumitip_fab.solve.goals import Task
 from lumitip_fab.solve.information import Expected, expected
-from lumitip_fab.solve.search import Judged, Progress, Search, search
+from lumitip_fab.solve.judged import Judged
+from lumitip_fab.solve.search import Progress, Search, search
 
 
 @dataclass(frozen=True)
