@@ -45,9 +45,17 @@ def test_values_and_base_of_a_goals_file(goals: Path) -> None:
     assert smaller.stack.silicone_mm == 2.0
 
 
-def test_the_example_is_valid() -> None:
-    example = Path(__file__).parents[2] / "examples/goals.toml"
-    assert read_goals(example).base.parameters.name == "Lumitip published"
+@pytest.mark.parametrize(
+    ("name", "base"),
+    [
+        ("goals", "Lumitip published"),
+        ("goals_by_ring", "Lumitip by goals"),
+        ("goals_wsg50", "Lumitip published"),
+    ],
+)
+def test_the_examples_are_valid(name: str, base: str) -> None:
+    example = Path(__file__).parents[2] / f"examples/{name}.toml"
+    assert read_goals(example).base.parameters.name == base
 
 
 FAULTS = {
