@@ -1,6 +1,7 @@
 """The manual as a PDF on A4 set by reportlab: the same text."""
 
 import io
+import math
 from collections.abc import Iterator
 from html import escape
 from itertools import pairwise
@@ -16,6 +17,7 @@ from reportlab.lib.styles import ParagraphStyle
 from reportlab.lib.units import inch, mm
 from reportlab.pdfgen.canvas import Canvas
 from reportlab.platypus import (
+    CondPageBreak,
     Flowable,
     Image,
     KeepTogether,
@@ -43,7 +45,7 @@ _GAP = 6 * mm  # between pictures beside each other
 _PAIR_HIGH = 85 * mm
 _COLUMNS = ((1, 1), (2, 4), (3, 1000))
 """How many pictures of a paragraph stand in a row, up to how many."""
-_SHARES = (1.0, 0.9, 0.8)  # a step that then fits on its page is not broken
+_SHARES = (1.0, 0.9, 0.8)  # of a drawing, where that saves a page
 _DPI = 200
 _BODY = ParagraphStyle(
     "body",
@@ -144,14 +146,16 @@ def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
 
 
 def _kept(tokens: list[Token], files: Files) -> list[Flowable]:
-    """A step with a drawing that fits on a page, if need be with smaller drawings, is not broken;
-    another one begins below the step before it."""
-    if any(child.type == "image" for token in tokens for child in token.children or []):
-        for share in _SHARES:
-            step = list(_flowables(tokens, files, share))
-            if _high(step) <= _PAGE_HIGH:
-                return [KeepTogether(step)]
-    return list(_flowables(tokens, files))
+    """A step with drawings takes the fewest pages, if need be with smaller drawings, and is not
+    broken if that is one; another step begins below the one before it."""
+    if not any(child.type == "image" for token in tokens for child in token.children or []):
+        return list(_flowables(tokens, files))
+    steps = [list(_flowables(tokens, files, share)) for share in _SHARES]
+    pages = [math.ceil(_high(step) / _PAGE_HIGH) for step in steps]
+    step = steps[pages.index(min(pages))]
+    if min(pages) == 1:
+        return [KeepTogether(step)]
+    return [CondPageBreak(_high(step) % _PAGE_HIGH), *step]  # with less room, one page more
 
 
 def _high(step: list[Flowable]) -> float:
