@@ -161,9 +161,10 @@ def test_the_force_that_a_finger_bears_is_named_before_the_gripper_closes(copied
     text = (copied / HTML).read_text(encoding="utf-8")
     assert f"<td>{strength.rated_force_n:g} N</td>" in text[: text.index("<h2>1. Parts</h2>")]
     mount = chapter(copied, "Mount")
+    mount = " ".join(mount.split())
     limit = mount.index(f"Limit the force of the gripper to {strength.rated_force_n:g} N")
     assert f"up to {strength.gripper_n:g} N, which can break a finger" in mount
-    assert limit < mount.index("open and close the")
+    assert limit < mount.index("screw each finger on") < mount.index("open and close the gripper")
 
 
 @pytest.mark.parametrize(

@@ -98,6 +98,23 @@ def test_points_of_the_wiring_note_stand_apart(written: Written, preset: str) ->
     assert not re.search(r"\.- |\S- [A-Z]", note)
 
 
+def test_the_gripper_moves_alone_before_the_fingers_are_on(written: Written) -> None:
+    for preset in ("published", "integrated", "flex"):
+        step = words(mounting(written({}, preset)))
+        assert step.index("activate the gripper") < step.index("screw each finger on")
+        if "Plug the socket" in step:
+            assert step.index("Plug the socket") < step.index("activate the gripper")
+
+
+def test_the_flange_is_measured_where_it_can_be_reached(written: Written) -> None:
+    step = words(mounting(written({}, "flex")))
+    board = next(b for b in written({}, "flex").auxiliary_boards if b.name == "flange")
+    found = re.search(r"in the contacts of (J\d+): 5 V from \1\.(\d+) to \1\.(\d+)\.", step)
+    assert found
+    nets = dict(next(part for part in board.components if part.ref == found[1]).nets)
+    assert (nets[found[2]], nets[found[3]]) == ("5V", "GND")
+
+
 def test_a_bench_supply_is_needed_where_a_light_shows_it(written: Written) -> None:
     design = written({}, "dense")
     bare = replace(design, electrical=replace(design.electrical, indicators=()))

@@ -40,7 +40,7 @@ def manual_text(design: Design, files: Files) -> str:
     """The whole manual. An image stands alone in its paragraph; its path is below the outputs."""
     chapters = (
         _front(design),
-        _bought(files),
+        _bought(design, files),
         _boards(design, files),
         _printed(design, files),
         _wired(design, files),
@@ -121,7 +121,7 @@ def _heated(step: HeatStep) -> str:
     )
 
 
-def _bought(files: Files) -> str:
+def _bought(design: Design, files: Files) -> str:
     bill = files.facts("bom.csv")
     lines = "\n".join(
         f"| {as_written(line['item'])} | {as_written(line['where'])} | {_how_much(line)} "
@@ -133,6 +133,7 @@ def _bought(files: Files) -> str:
     return _text(
         "bought",
         prices=as_written(bill["prices"]),
+        measured=_text("measured") if design.flanges else "",
         lines=lines,
         total=money(bill["total"]),
         packs=packs,
@@ -226,7 +227,10 @@ def _printed(design: Design, files: Files) -> str:
     lines = files.text("print/printing.md").splitlines()
     made = [line for line in lines if design.mask.route == "tpu" or "| `mask/" not in line]
     note = _included("\n".join(made))
-    return _text("printed", note=note, moulds=heights(design), filaments=_filaments(design))
+    tried = _text("tried_corner" if design.fit_plate.corners else "tried_slice")
+    return _text(
+        "printed", note=note, moulds=heights(design), filaments=_filaments(design), tried=tried
+    )
 
 
 def _filaments(design: Design) -> str:

@@ -55,17 +55,18 @@ def _work(design: Design) -> Iterator[str]:
         yield _text("socketed", cable=cable, header=header)
     for flange in design.flanges:
         yield from _flanged(design, flange)
+    if design.flanges:
+        yield _passed_on(design)
     for holder in design.holders:
         yield _text("in_holder", holder=holder, screws=len(holder.holes))
     if not design.holders and any(board.name == "breakout" for board in design.auxiliary_boards):
         yield _text("beside_gripper", mount=mount)
+    for header, cable in _plugs(design):
+        yield _text("plugged", cable=cable, header=header)
+    yield _text("activated", rated_n=design.strength.rated_force_n, greatest=_greatest(design))
     if mount.lugs:
         yield _text("tied")
     yield _text("screwed_on", bolts=len(mount.bolt_u_mm), mount=mount)
-    if design.flanges:
-        yield _passed_on(design)
-    for header, cable in _plugs(design):
-        yield _text("plugged", cable=cable, header=header)
     wires = [wire for cable in design.cabling.cables for wire in cable.wires]
     led_net = f"{design.wiring.supply_v:g}V"
     ends = [wire for wire in wires if wire.end.board == "supply"]
@@ -74,7 +75,6 @@ def _work(design: Design) -> Iterator[str]:
         listed_ends = ", ".join(f"{wire.number} to {wire.signal}" for wire in ends)
         free = "".join(_text("supplied_free", wire=number) for number in own)
         yield _text("supplied", ends=listed_ends, free=free)
-    yield _text("limited", rated_n=design.strength.rated_force_n, greatest=_greatest(design))
     yield _text("moved")
 
 
@@ -90,28 +90,48 @@ def _greatest(design: Design) -> str:
 def _flanged(design: Design, flange: Flange) -> Iterator[str]:
     """The flange between robot and gripper."""
     yield _text("taken_off")
-    yield _text("confirmed")
+    yield _text("confirmed", volts=_volts(_raw(design)))
     yield _text("contacts", flange=flange)
     for lit in design.electrical.indicators:
         output = f"{lit.output_v:g}V"
-        raw = next(name for name in _probed(design) if name.endswith(INPUT_END))
+        raw = _raw(design)
         yield _text("indicator", lit=lit, supply=_volts(raw), raw=raw, output=output)
     yield _text("closed", flange=flange, glue=design.strength.glue)
     yield _text("flange", flange=flange, bolts=len(flange.bolts))
-    if design.electrical.indicators:
-        yield _text("powered")
+    yield from _powered(design)
+
+
+def _powered(design: Design) -> Iterator[str]:
+    """Where the flange's supply is measured once the gripper hides its board."""
+    for lit in design.electrical.indicators:
+        output = f"{lit.output_v:g}V"
+        for part in front_headers(_flange(design)):
+            plus, minus = (
+                [f"{part.ref}.{number}" for number, net in part.nets if net == wanted]
+                for wanted in (output, "GND")
+            )
+            if plus and minus:
+                volts = f"{lit.output_v:g} V"
+                header = part.ref
+                yield _text("powered", header=header, volts=volts, plus=plus[0], minus=minus[0])
+                return
 
 
 def _passed_on(design: Design) -> str:
     """Where the gripper's supply and lines are: on the headers of the flange's board."""
     board = _flange(design)
     headers = front_headers(board)
-    raw = next(name for name in _probed(design) if name.endswith(INPUT_END))
+    raw = _raw(design)
     pads = [f"{part.ref}.{number}" for part in headers for number, net in part.nets if net == raw]
     supply = _text("from_robot", pads=listed(pads), volts=_volts(raw)) if pads else ""
     own = [part.ref for part in headers if {net for _, net in part.nets} - {*board.supplies}]
     lines = _text("lines", lines=listed(own)) if own else ""
     return _text("passed_on", supply=supply or _text("behind_fuse"), lines=lines)
+
+
+def _raw(design: Design) -> str:
+    """Net of the contacts' supply before the fuse, such as `"24V_IN"`."""
+    return next(name for name in _probed(design) if name.endswith(INPUT_END))
 
 
 def _volts(raw: str) -> str:

@@ -162,7 +162,7 @@ def _high(step: list[Flowable]) -> float:
     """Height of a step on one page."""
     measured = Canvas(io.BytesIO())
     heights = [piece.wrapOn(measured, _WIDTH, _PAGE_HIGH)[1] for piece in step]
-    return sum(heights) + sum(piece.getSpaceBefore() + piece.getSpaceAfter() for piece in step)
+    return float(sum(heights) + sum(p.getSpaceBefore() + p.getSpaceAfter() for p in step))
 
 
 def _flowables(tokens: list[Token], files: Files, share: float = 1.0) -> Iterator[Flowable]:

@@ -230,7 +230,7 @@ def _details(finger: Finger, stack: Stack) -> list[tuple[tuple[str, str], Any, s
             )
     pad = finger.connector.pads[0]
     ways = len(finger.connector.pads)
-    labels.append(((f"{ways} wires", "soldered from the back"), (*pad, half), "board"))
+    labels.append(((f"{ways} wires", "put in from the back"), (*pad, half), "board"))
     hole = min(finger.holes)
     words = ("Pins", "hold the board") if stack.sunk else ("Holes", "for thread")
     labels.append((words, (*hole, stack.face_z_mm), "backing"))

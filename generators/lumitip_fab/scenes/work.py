@@ -17,6 +17,7 @@ from lumitip_fab.scenes.clamped_view import clamped_view
 from lumitip_fab.scenes.finger_views import board_view, cable_view, folded_view
 from lumitip_fab.scenes.glb import Group
 from lumitip_fab.scenes.mould_view import mould_view
+from lumitip_fab.scenes.plate_view import plate_view
 from lumitip_fab.scenes.system import finger_group, stl_mesh
 
 OFF_MM = 3.5  # from keys and stops to where a drop of silicone is tried
@@ -34,6 +35,7 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
     boards = {f.name: _wired(design, f, layers[f.name], groups[f.name]) for f in design.fingers}
     drawings = {
         "facing": facing_view(boards[finger.name], boards[wired.name]),
+        "plate": plate_view(stl_mesh(files, "fit/fit_plate.stl"), design.fit_plate),
         "board": board_view(finger, layers[finger.name], boards[finger.name].parts),
         "mould": mould_view(cast.mould, design.outline, design.board, design.mould, design.clamps),
         "drop": drop_view(layers[finger.name], bare_spot(design), design.stack),

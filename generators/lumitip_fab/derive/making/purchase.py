@@ -101,7 +101,17 @@ def _controller(config: Input, prices: Prices) -> list[Bought]:
     if config.catalogue.controllers[name].module:
         return []
     title = config.title("controller.board")
-    return [Bought("electronics", title, "", title, "reads the receiver", 1, prices.each.get(name))]
+    return [
+        Bought(
+            "electronics",
+            title,
+            "",
+            title,
+            "reads the receiver; with its pin headers",
+            1,
+            prices.each.get(name),
+        )
+    ]
 
 
 def _bolts(mount: Mount, packs: Mapping[str, Pack]) -> list[Bought]:
