@@ -54,8 +54,8 @@ def build(
     Args:
         file: the parameter file.
         out: the folder; made if missing.
-        progress: called with the name of each step that ends, how many are done, and how many
-            there are.
+        progress: called with the name of each step that ends, how much is done, and how much
+            there is, both in seconds that the steps take one core, about.
         only: names of the steps to run, like `["backing"]`; all, if there are none.
 
     Raises:

@@ -6,7 +6,7 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
 from lumitip_fab.cli.screen import ERR, OUT
 from lumitip_fab.cli.steps import STEPS
@@ -57,8 +57,9 @@ def run(options: argparse.Namespace) -> int:
     columns = (
         TextColumn("{task.description:<24}"),
         BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
+        TaskProgressColumn(),
+        TimeRemainingColumn(),
+        TextColumn("left"),
     )
     silent = options.quiet or options.json
     with Progress(*columns, console=ERR, disable=silent, transient=True) as bar:

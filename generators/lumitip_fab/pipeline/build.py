@@ -48,7 +48,8 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 Progress = Callable[[str, int, int], None]
-"""Called at the end of a task with its name, how many are done, and how many there are."""
+"""Called at the end of a task with its name, how much is done, and how much there is: seconds that
+tasks take one core, about."""
 Resolve = Callable[[], "tuple[Design, tuple[Artefact, ...]]"]
 """Gives a design and its documents."""
 
@@ -132,6 +133,7 @@ class _Run:
         self.tasks: dict[str, manifest.Ran] = {}
         self.written: list[str] = []
         self.ran: list[str] = []
+        self.done_s = self.all_s = 0
         self.kept: list[str] = []
 
     def all(
@@ -146,10 +148,11 @@ class _Run:
             self._keep_others({task.name for task in tasks(asked, self.design)})
         for artefact in documents:
             self._write("documents", artefact)
-        early = tuple(step for step in asked if not step.late)
-        self._make(tuple(tasks(early, self.design)))
-        for step in (step for step in asked if step.late):
-            self._make(tuple(tasks((step,), self.design)))
+        early = tuple(tasks(tuple(step for step in asked if not step.late), self.design))
+        late = [tuple(tasks((step,), self.design)) for step in asked if step.late]
+        self.all_s = sum(task.step.takes_s for some in (early, *late) for task in some)
+        for some in (early, *late):
+            self._make(some)
         removed = _remove(self.out, set(self.before.files) - set(self.files))
         origin = manifest.Origin()  # of files of several designs, none is the origin
         if not only:
@@ -175,11 +178,12 @@ class _Run:
         for task in wanted:
             if task not in stale:
                 self.kept.append(task.name)
+                self.done_s += task.step.takes_s
                 self.tasks[task.name] = self.before.tasks[task.name]
                 mine = {p: e for p, e in self.before.files.items() if e.task == task.name}
                 self.files |= mine
         fixed = {task.name: task.fixed() for task in stale}
-        total = len(self.ran) + len(stale)
+        takes_s = {task.name: task.step.takes_s for task in stale}
         for result in run_tasks(stale, files):
             for artefact in result.artefacts:
                 self._write(result.task, artefact)
@@ -187,7 +191,8 @@ class _Run:
             key = needs.key(self.hashes, versions, *fixed[result.task])
             self.tasks[result.task] = manifest.Ran(key, needs.fields, needs.files)
             self.ran.append(result.task)
-            self.progress(result.task, len(self.ran), total)
+            self.done_s += takes_s[result.task]
+            self.progress(result.task, self.done_s, self.all_s)
 
     def _is_current(self, task: "Task", versions: dict[str, str]) -> bool:
         """Whether a task's files are there and nothing that it read has changed."""

@@ -37,6 +37,8 @@ class Step:
     """Whether it takes long, and so runs in a worker: routing, and what imports the CAD kernel."""
     tools: tuple[str, ...] = ()
     """Distributions whose version its output may depend on."""
+    takes_s: int = 1
+    """How long a run takes one core, about, of the default design: for the time left alone."""
 
     @property
     def module(self) -> str:
