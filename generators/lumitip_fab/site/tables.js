@@ -13,7 +13,8 @@ function show(names, from) {
   for (const element of all(".lit")) element.classList.remove("lit");
   for (const button of all(".show")) button.setAttribute("aria-pressed", "false");
   [shown.names, shown.from] = [names, from];
-  const lit = names.flatMap((name) => [...(parts.get(name) || []), ...panelsOf(name)]);
+  const lit = names.flatMap((name) =>
+    [...(parts.get(name) || nets.get(name) || []), ...panelsOf(name)]);
   for (const element of lit) element.classList.add("lit");
   for (const listener of shown.listeners) listener(names);
   byId("shown").hidden = !names.length;

@@ -1,10 +1,13 @@
-"""Where a line of a table is shown: names of bodies, parts, boards, masks and wires of the page.
+"""Where a line of a table is shown: names of bodies, parts, nets, boards, masks and wires of the
+page.
 
-A body of the 3D view and a part of a board have the same name, such as `emitter.D18`.
+A body of the 3D view and a part of a board have the same name, such as `emitter.D18`; a net of a
+board is `emitter:Q18`.
 """
 
 import re
 from collections.abc import Collection, Iterable, Iterator
+from pathlib import Path
 
 from lumitip_fab.site.boards import drawn_parts
 from lumitip_fab.site.folder import Folder, board_path
@@ -13,6 +16,11 @@ _REFERENCE = re.compile(r"\b[A-Z]{1,3}\d+\b")
 _NODE = re.compile(r"\b(?:emitter|receiver|flange|holder|gripper|coupling|robot)\.[A-Za-z]\w*")
 _FINGER = re.compile(r"\b(emitter|receiver)\b")
 _PLACE = re.compile(r"at \((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\) of the file's frame")
+_WORD = re.compile(r"[^\s,;:()]+")
+_EVERYWHERE = "GND"
+"""Its fills are all over each board."""
+_SCENES = ("assembly", "robot")
+"""Folders of files with all bodies of both fingers."""
 _OF_BREAKOUT = "holder.board"
 """The breakout lies in the holder."""
 
@@ -35,6 +43,16 @@ class Targets:
         self.references = {
             board: {part.ref for part in folder.board(board).parts} for board in self.boards
         }
+        self._nets = {
+            board: {piece.net for piece in folder.board(board).copper()} - {"", _EVERYWHERE}
+            for board in self.boards
+        }
+        self._modelled = [
+            (Path(model.path).stem, f"{board}.{part.ref}")
+            for board in self.boards
+            for part in folder.board(board).parts
+            for model in part.models
+        ]
         self._parts = {
             board: folder.facts(board_path(board)).get("parts", ()) for board in self.boards
         }
@@ -42,6 +60,7 @@ class Targets:
             *folder.scene.nodes,
             *(f"{b}.{ref}" for b in self.boards for ref in drawn_parts(folder.board(b))),
             *(f"board.{board}" for board in self.boards),
+            *(f"{board}:{net}" for board, nets in self._nets.items() for net in nets),
             *(f"mask.{finger}" for finger in self.fingers),
             *(f"print.{path}" for path in printed),
             "wires",
@@ -70,6 +89,8 @@ class Targets:
             yield from (f"flange.{half}" for half in halves or ("lower", "upper"))
         elif folder == "holder":
             yield "holder.tray"
+        elif path.startswith("boards/models/"):
+            yield from (part for stem, part in self._modelled if stem == Path(path).stem)
         elif folder == "boards":
             yield from self._of_board(name.partition("/")[0])
         elif folder == "wiring":
@@ -99,7 +120,17 @@ class Targets:
         board = file.split("/")[1] if file.startswith("boards/") and file.count("/") > 1 else ""
         known = self.references.get(board, set())
         found += [f"{board}.{ref}" for ref in _REFERENCE.findall(rest) if ref in known]
+        words = _WORD.findall(rest)
+        found += [f"{board}:{word}" for word in words if word in self._nets.get(board, ())]
+        if file.startswith(_SCENES):
+            found += self._of_scene(words)
         return self._shown([*found, *self._of_file(file)])
+
+    def _of_scene(self, words: list[str]) -> Iterator[str]:
+        """Bodies that are named by their kind; else the backings, which carry all others."""
+        fingers = [finger for finger in self.fingers if finger in words] or self.fingers
+        kinds = [f"{finger}.{word}" for finger in fingers for word in words]
+        yield from self._shown(kinds) or (f"{finger}.backing" for finger in fingers)
 
     def of_line(self, group: str, item: str, part: str) -> list[str]:
         """What a line of the bill buys."""
