@@ -133,7 +133,8 @@ def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
     boards = [*names, *(auxiliary.name for auxiliary in design.auxiliary_boards)]
     wanted = {"assembly/receiver_exploded.svg", "assembly/system.svg", "wiring/wiring.svg"}
     wanted |= {f"mask/{name}_mask.svg" for name in names}
-    work = ("facing", "board", "mould", "drop", "cable", "filled", "lowered", "clamped", "lifted")
+    bench = ("plate", "facing", "board", "mould", "drop")
+    work = (*bench, "cable", "filled", "lowered", "clamped", "lifted")
     wanted |= {f"manual/{name}.svg" for name in work}
     wanted |= {f"manual/{name}_folded.svg" for name in names}
     if design.mask.route != "tpu":

@@ -210,9 +210,10 @@ def test_mounting_is_a_numbered_list_from_the_robot_to_the_fingers(copied: Path)
         "Take the gripper off",
         "flange_upper",
         "Put the flange",
+        "Connect the gripper",
         "holder.3mf",
     ]
-    order += ["Tie each finger", "screw each finger", "Connect the gripper", "Plug the socket"]
+    order += ["Plug the socket", "activate the gripper", "Tie each finger", "screw each finger"]
     order += ["open and close"]
     assert sorted(order, key=work.index) == order
     assert work.count("<li>") >= len(order)
