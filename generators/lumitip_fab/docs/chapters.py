@@ -51,7 +51,7 @@ def manual_text(design: Design, files: Files) -> str:
         ),
         *_masked(design, files),
         mounting(design),
-        _text("run", warm_up_min=WARM_UP_MIN),
+        _run(design),
         _kept(design.mask),
     )
     numbers = count(1)
@@ -250,6 +250,12 @@ def _masked(design: Design, files: Files) -> Iterator[str]:
     both = _text("masks", pictures=pictures)
     yield replace(first, text=f"{both}\n\n{first.text}").section()
     yield from (step.section() for step in others)
+
+
+def _run(design: Design) -> str:
+    """Warm-up, tare, and the test with the gauge card where there is one."""
+    accepted = "\n" + _text("accepted").strip() if design.gauge_cards else ""
+    return _text("run", warm_up_min=WARM_UP_MIN, accepted=accepted)
 
 
 def _kept(mask: Mask) -> str:
