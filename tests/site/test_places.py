@@ -24,9 +24,6 @@ def test_every_name_that_a_line_shows_is_in_a_panel(opened: Opened) -> None:
     assert files and files <= set(prints)
 
 
-PLACELESS = {"bom", "derivation", "firmware", "gauge_card", "heat", "manifest", "manual_pages"}
-
-
 def test_checks_of_parts_and_boards_lead_to_a_place(opened: Opened) -> None:
     rows = opened().evaluate("data.checks.map(row => [row.check, row.note, row.show])")
     nowhere = {check for check, _, show in rows if not show}
