@@ -75,6 +75,10 @@ NAMES = (
 )
 
 
+class LateError(BaseException):
+    """No `OSError`, which would be reported as a file that cannot be read."""
+
+
 @pytest.fixture
 def design(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A copy of the design folder with a user's file, in the working folder; a test that waits for
@@ -85,7 +89,7 @@ def design(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     monkeypatch.chdir(tmp_path)
 
     def late(*_: object) -> None:
-        raise TimeoutError(f"not refused in {LONGEST_S} s")
+        raise LateError(f"not refused in {LONGEST_S} s")
 
     before = signal.signal(signal.SIGALRM, late)
     signal.alarm(LONGEST_S)

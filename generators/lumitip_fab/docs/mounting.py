@@ -75,7 +75,7 @@ def _work(design: Design) -> Iterator[str]:
         listed_ends = ", ".join(f"{wire.number} to {wire.signal}" for wire in ends)
         free = "".join(_text("supplied_free", wire=number) for number in own)
         yield _text("supplied", ends=listed_ends, free=free)
-    yield _text("moved")
+    yield _text("moved", rated_n=design.strength.rated_force_n)
 
 
 def _greatest(design: Design) -> str:
@@ -113,7 +113,7 @@ def _powered(design: Design) -> Iterator[str]:
             if plus and minus:
                 volts = f"{lit.output_v:g} V"
                 header = part.ref
-                yield _text("powered", header=header, volts=volts, plus=plus[0], minus=minus[0])
+                yield _text("powered", header=header, volts=volts, plus=plus[0], minus=minus[-1])
                 return
 
 
