@@ -35,7 +35,7 @@ def passes(file: Path) -> bool:
         print(f"  {file.stem}: not built: {error}", flush=True)
         return False
     outcome = run_checks(file.with_suffix(""))
-    failed = sorted({message.check for message in outcome.failed})
+    failed = sorted({measurement.check for measurement in outcome.failed})
     print(f"  {file.stem}: " + (", ".join(failed) or f"passes {len(outcome.names)}"), flush=True)
     return not failed
 

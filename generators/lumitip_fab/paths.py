@@ -6,6 +6,8 @@ import stat
 from importlib.resources import files
 from pathlib import Path
 
+LARGEST_INPUT_BYTES = 200_000
+
 
 def packaged_design() -> Path:
     """The `design/` that comes with the package: inside the wheel, or beside the source."""
@@ -23,9 +25,6 @@ def firmware_sources() -> tuple[Path, ...]:
 def resolved(path: Path) -> Path:
     """A path without symbolic links; of links in a circle, as far as it can be followed."""
     return Path(os.path.realpath(path))  # `Path.resolve` raises for a circle before Python 3.13
-
-
-LARGEST_INPUT_BYTES = 200_000
 
 
 def read_input(path: Path) -> bytes:

@@ -99,7 +99,7 @@ def design(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 
 def _refused(design: Path, capsys: pytest.CaptureFixture[str]) -> str:
-    """What `build` prints about the user's file, which it must refuse."""
+    """Everything that `build` prints about the user's file, which it must refuse."""
     before = sorted(design.parent.rglob("*"))
     code = main(["build", "design/mine.toml", "--out", "out"])
     printed = capsys.readouterr()

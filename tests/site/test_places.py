@@ -6,6 +6,10 @@ from site_page import Opened
 
 pytestmark = pytest.mark.slow
 
+PLACELESS = {"bom", "derivation", "firmware", "gauge_card", "heat", "manifest", "manual_pages"}
+PLACELESS |= {"mould", "packs", "printing"}  # notes: amounts, hours, settings
+MOULD_NOTES = {"mould.clamped", "mould.masses", "mould.note", "mould.volume"}
+
 
 def test_every_name_that_a_line_shows_is_in_a_panel(opened: Opened) -> None:
     tab = opened()
@@ -18,6 +22,24 @@ def test_every_name_that_a_line_shows_is_in_a_panel(opened: Opened) -> None:
     names = tab.evaluate("data.checks.flatMap(row => row.show)")
     files = {name.removeprefix("print.").partition("@")[0] for name in names if "print." in name}
     assert files and files <= set(prints)
+
+
+def test_checks_of_parts_and_boards_lead_to_a_place(opened: Opened) -> None:
+    rows = opened().evaluate("data.checks.map(row => [row.check, row.note, row.show])")
+    nowhere = {check for check, _, show in rows if not show}
+    assert {check.partition(".")[0] for check in nowhere} <= PLACELESS
+    assert not any(check.startswith("mould.") for check in nowhere - MOULD_NOTES)
+    gaps = [(note, show) for check, note, show in rows if check == "board.clearance"]
+    assert len(gaps) == 4
+    for note, show in gaps:  # such as "track of S0 and pad of GND"
+        nets = {word for word in note.split()[2::4] if word != "GND"}
+        assert nets and nets <= {name.partition(":")[2] for name in show}
+    bodies = next(
+        show
+        for check, note, show in rows
+        if check == "assembly.interference" and note.startswith("backing and silicone")
+    )
+    assert {name.partition(".")[2] for name in bodies} == {"backing", "silicone"}
 
 
 def test_a_net_lights_up_on_its_board(opened: Opened) -> None:

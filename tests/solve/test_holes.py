@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from goals_file import write_goals
 from lumitip.grid import hexagonal_grid
 from lumitip_fab.derive import derive
 from lumitip_fab.errors import InputError
@@ -14,7 +15,6 @@ from lumitip_fab.solve.judge import Job, drive, judge
 
 COLUMNS = (5, 4, 5, 4, 5, 4, 5)
 GOALS = """\
-base = "{base}"
 [goals]
 edge_mm = 0.1
 [vary]
@@ -23,10 +23,8 @@ mask.cell_holes_mm = {{ from = 2.0, to = 3.0, step = 0.5, by = "ring" }}
 
 
 @pytest.fixture
-def goals(tmp_path: Path, design_dir: Path) -> Path:
-    file = tmp_path / "goals.toml"
-    file.write_text(GOALS.format(base=(design_dir / "presets/published.toml").as_posix()))
-    return file
+def goals(tmp_path: Path) -> Path:
+    return write_goals(tmp_path, GOALS)
 
 
 def test_groups_of_a_grid() -> None:

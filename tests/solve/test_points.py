@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
+from goals_file import write_goals
 from lumitip_fab import derived
 from lumitip_fab.checks.run import run_checks
 from lumitip_fab.cli import main
 
 GOALS = """\
-base = "{base}"
 [goals]
 edge_mm = 0.2
 cables_mm = []
@@ -26,10 +26,9 @@ emitter.current_ma = [12.8, 19.2]
 
 @pytest.mark.slow
 def test_points_are_built_and_pass_every_check(
-    tmp_path: Path, design_dir: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    file, out = tmp_path / "goals.toml", tmp_path / "out"
-    file.write_text(GOALS.format(base=(design_dir / "presets/published.toml").as_posix()))
+    file, out = write_goals(tmp_path, GOALS), tmp_path / "out"
     assert main(["design", str(file), "--out", str(out), "--points", "2", "--build"]) == 0
     printed = " ".join(capsys.readouterr().out.split())
     points = json.loads((out / "study.json").read_text())["points"]

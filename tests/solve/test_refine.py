@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 
+from goals_file import write_goals
 from lumitip_fab.solve.goals import Task, read_goals
 from lumitip_fab.solve.judge import excesses
 from lumitip_fab.solve.judged import Judged, Point, front
 from lumitip_fab.solve.refine import refine
 
 GOALS = """\
-base = "{base}"
 [goals]
 edge_mm = 0.1
 [limits]
@@ -56,12 +56,9 @@ class Bowl:
 
 
 @pytest.fixture
-def make(tmp_path: Path, design_dir: Path) -> MakeTask:
+def make(tmp_path: Path) -> MakeTask:
     def task(cost: float = 60.0, vary: str = NUMBERS) -> Task:
-        base = (design_dir / "presets/published.toml").as_posix()
-        file = tmp_path / "goals.toml"
-        file.write_text(GOALS.format(base=base, cost=cost, vary=vary))
-        return read_goals(file)
+        return read_goals(write_goals(tmp_path, GOALS, cost=cost, vary=vary))
 
     return task
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from goals_file import write_goals
 from lumitip_fab.explore.evaluate import NAME
 from lumitip_fab.solve.goals import read_goals
 from lumitip_fab.solve.search import Search, search
@@ -16,7 +17,6 @@ from lumitip_fab.solve.search import Search, search
 pytestmark = pytest.mark.slow
 
 GOALS = """\
-base = "{base}"
 [goals]
 edge_mm = 0.12
 gaps_mm = [3.0]
@@ -30,10 +30,8 @@ DESIGNS = 12
 
 
 @pytest.fixture(scope="module")
-def goals(tmp_path_factory: pytest.TempPathFactory, design_dir: Path) -> Path:
-    file = tmp_path_factory.mktemp("goals") / "goals.toml"
-    file.write_text(GOALS.format(base=(design_dir / "presets/published.toml").as_posix()))
-    return file
+def goals(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_goals(tmp_path_factory.mktemp("goals"), GOALS)
 
 
 def _searched(goals: Path, out: Path, scheduler: str | None = None) -> Search:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from goals_file import write_goals
 from lumitip_fab import derived, load
 from lumitip_fab.cli import main
 from lumitip_fab.solve.goals import Task, read_goals
@@ -17,7 +18,6 @@ from lumitip_fab.solve.search import Search, search
 pytestmark = pytest.mark.slow
 
 GOALS = """\
-base = "{base}"
 [goals]
 edge_mm = 0.12
 gaps_mm = [3.0]
@@ -30,20 +30,17 @@ mask.hole_mm = {{ from = 2.0, to = {to}, step = 0.25 }}
 """
 
 
-def written(tmp_path: Path, design_dir: Path, limits: str, to: float, vary: str) -> Path:
-    file = tmp_path / "goals.toml"
-    base = (design_dir / "presets/published.toml").as_posix()
-    file.write_text(GOALS.format(base=base, limits=limits, to=to, vary=vary))
-    return file
+def written(tmp_path: Path, limits: str, to: float, vary: str) -> Path:
+    return write_goals(tmp_path, GOALS, limits=limits, to=to, vary=vary)
 
 
 def searched(task: Task, out: Path, designs: int) -> Search:
     return search(task, out, designs, 0, None, lambda *_: None)
 
 
-def test_few_of_many_designs_find_the_best_of_all(tmp_path: Path, design_dir: Path) -> None:
+def test_few_of_many_designs_find_the_best_of_all(tmp_path: Path) -> None:
     vary = "emitter.current_ma = [4.0, 8.0, 19.2]"
-    file = written(tmp_path, design_dir, "current_ma = 39.0", 5.0, vary)
+    file = written(tmp_path, "current_ma = 39.0", 5.0, vary)
     file.write_text(file.read_text().replace("[vary]", '[fixed]\nemitter.drive = "source"\n[vary]'))
     task = read_goals(file)
     every = searched(task, tmp_path / "all", task.designs)
@@ -70,11 +67,9 @@ def test_few_of_many_designs_find_the_best_of_all(tmp_path: Path, design_dir: Pa
     assert again.designs == few.designs
 
 
-def test_limits_hold_and_refused_designs_have_their_reasons(
-    tmp_path: Path, design_dir: Path
-) -> None:
+def test_limits_hold_and_refused_designs_have_their_reasons(tmp_path: Path) -> None:
     vary = 'grid.pitch_mm = [3.0, 6.0]\ngrid.columns = "keep_size"'
-    task = read_goals(written(tmp_path, design_dir, "cells = 40", 3.0, vary))
+    task = read_goals(written(tmp_path, "cells = 40", 3.0, vary))
     found = searched(task, tmp_path / "out", task.designs)
     refused = [one for one in found.designs if one.refused]
     assert refused
@@ -86,9 +81,9 @@ def test_limits_hold_and_refused_designs_have_their_reasons(
 
 
 def test_a_study_is_written_and_its_points_are_parameter_files(
-    tmp_path: Path, design_dir: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    file = written(tmp_path, design_dir, "cost = 60.0", 2.75, "")
+    file = written(tmp_path, "cost = 60.0", 2.75, "")
     command = ["design", str(file), "--points", "1", "--out"]
     assert main([*command, str(tmp_path / "a")]) == 0
     printed = capsys.readouterr().out
@@ -118,9 +113,9 @@ def test_a_study_is_written_and_its_points_are_parameter_files(
 
 
 def test_limits_that_no_design_keeps_are_an_answer(
-    tmp_path: Path, design_dir: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    file = written(tmp_path, design_dir, "cost = 20.0", 2.25, "")
+    file = written(tmp_path, "cost = 20.0", 2.25, "")
     assert main(["design", str(file), "--out", str(tmp_path / "out")]) == 1
     printed = " ".join(capsys.readouterr().out.split())
     assert "No design keeps all limits" in printed
@@ -129,9 +124,9 @@ def test_limits_that_no_design_keeps_are_an_answer(
 
 
 def test_designs_that_are_all_refused_are_an_answer(
-    tmp_path: Path, design_dir: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    file = written(tmp_path, design_dir, "cost = 60.0", 2.25, "")
+    file = written(tmp_path, "cost = 60.0", 2.25, "")
     text = file.read_text().replace(
         "from = 2.0, to = 2.25, step = 0.25", "from = 5.9, to = 6.0, step = 0.1"
     )
@@ -155,11 +150,10 @@ def test_numbers_out_of_range_are_all_named(
 
 def test_a_search_without_pymoo_says_what_to_install(
     tmp_path: Path,
-    design_dir: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setitem(sys.modules, "pymoo.core.evaluator", None)
-    file = written(tmp_path, design_dir, "cost = 60.0", 5.0, "")
+    file = written(tmp_path, "cost = 60.0", 5.0, "")
     assert main(["design", str(file), "--out", str(tmp_path / "out"), "--designs", "8"]) != 0
     assert "the search needs pymoo" in capsys.readouterr().err

@@ -146,16 +146,16 @@ def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
 
 
 def _kept(tokens: list[Token], files: Files) -> list[Flowable]:
-    """A step with drawings takes the fewest pages, if need be with smaller drawings, and is not
-    broken if that is one; another step begins below the one before it."""
+    """A step with drawings is not broken if it fits on a page, and of more than one page takes the
+    fewest, if need be with smaller drawings; one without begins below the step before it."""
     if not any(child.type == "image" for token in tokens for child in token.children or []):
         return list(_flowables(tokens, files))
     steps = [list(_flowables(tokens, files, share)) for share in _SHARES]
-    pages = [math.ceil(_high(step) / _PAGE_HIGH) for step in steps]
-    step = steps[pages.index(min(pages))]
-    if min(pages) == 1:
-        return [KeepTogether(step)]
-    return [CondPageBreak(_high(step) % _PAGE_HIGH), *step]  # with less room, one page more
+    found = [(math.ceil(high / _PAGE_HIGH), high) for high in map(_high, steps)]
+    best = min(range(len(steps)), key=lambda share: found[share][0])
+    if found[best][0] == 1:
+        return [KeepTogether(steps[best])]
+    return [CondPageBreak(found[best][1] % _PAGE_HIGH), *steps[best]]  # else one page more
 
 
 def _high(step: list[Flowable]) -> float:

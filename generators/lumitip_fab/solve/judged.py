@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from lumitip_fab.explore.front import undominated
-from lumitip_fab.explore.vary import Changes
+from lumitip_fab.explore.run import Found
 from lumitip_fab.solve.judge import OBJECTIVES
 
 Point = tuple[int, ...]
@@ -12,15 +12,9 @@ Point = tuple[int, ...]
 
 
 @dataclass(frozen=True)
-class Judged:
+class Judged(Found):
     """One design of a search."""
 
-    changes: Changes
-    columns: tuple[int, ...]
-    """Cells of each column of its grid."""
-    figures: dict[str, float]
-    """Empty if it is refused."""
-    refused: tuple[str, ...]
     excess: float
     """Sum of the shares by which it is beyond limits."""
 
