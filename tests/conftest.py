@@ -29,6 +29,8 @@ LONGEST = (
     "fab/test_slice.py",
     "mutations/test_mutators.py",
     "mutations/test_trial.py",
+    "solve/test_points.py",
+    "solve/test_resume.py",
 )
 """Test files that take longest, in this order before all others: a worker has a file to itself, and
 none is to begin a long one when the rest is done."""
@@ -81,7 +83,7 @@ def panelled(once: Once) -> Path:
     return once("panelled", lambda out: write_panelled(DESIGN, out))
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def cluster() -> Iterator[str]:
     """A Dask scheduler with two worker processes; its address."""
     distributed = pytest.importorskip("distributed")

@@ -1,5 +1,6 @@
 """The exceptions of the maker's side, all under one root, and the record of one fault."""
 
+import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -35,9 +36,13 @@ class Problem:
 
 def _printable(line: str) -> str:
     """One line that shows what a terminal would act on, like a newline in a name, as an escape."""
-    return "".join(
-        c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in line
-    )
+    return "".join(map(_shown, line))
+
+
+def _shown(c: str) -> str:
+    if c.isprintable() or unicodedata.category(c) == "Zs":  # a wide space is no control character
+        return c
+    return c.encode("unicode_escape").decode("ascii")
 
 
 class InputError(FabError):

@@ -45,12 +45,18 @@ def read_input(path: Path) -> bytes:
 
 
 def design_folder(file: Path) -> Path:
-    """The folder that a parameter file belongs to: that or the one above with `parts/` in it.
+    """The folder that a parameter file belongs to: that or the one above with `parts/` in it, or
+    with what is to be that folder and cannot be opened.
 
     No base file outside it is read.
     """
     here = resolved(file).parent
-    return next((f for f in (here, here.parent) if (f / "parts").is_dir()), here)
+    return next((f for f in (here, here.parent) if _has_parts(f)), here)
+
+
+def _has_parts(folder: Path) -> bool:
+    parts = folder / "parts"
+    return os.path.lexists(parts) and not parts.is_file()
 
 
 def parts_folders(folder: Path) -> tuple[Path, Path]:

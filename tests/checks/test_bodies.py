@@ -232,6 +232,16 @@ def test_a_damaged_step_file_that_no_stl_stands_for(
     assert failing(folder, "bodies") & wanted
 
 
+def test_a_damage_after_a_good_check_is_seen_and_so_is_its_repair(parts: Path) -> None:
+    assert failing(parts, "bodies") == set()
+    step = (parts / STL).with_suffix(".step")
+    good = step.read_bytes()
+    step.write_bytes((parts / PROP).with_suffix(".step").read_bytes())
+    assert failing(parts, "bodies")
+    step.write_bytes(good)
+    assert failing(parts, "bodies") == set()
+
+
 def test_one_spoilt_step_file_does_not_hide_the_others(outputs: Path, tmp_path: Path) -> None:
     spoilt_file = tmp_path / "spoilt.step"
     spoilt_file.write_text("ISO-10303-21;\nHEADER;\n")

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from lumitip_fab.cli import main
+from lumitip_fab.errors import Problem
 
 ROOT = Path(__file__).parents[2]
 LONGEST_S = 60
@@ -138,6 +139,26 @@ def test_what_stands_in_the_place_of_the_catalogue_is_refused(
     shutil.rmtree(design / "parts")
     make(design / "parts")
     assert "design/parts: is no folder" in _refused(design, capsys)
+
+
+def test_a_broken_catalogue_above_the_file_is_refused(
+    design: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.rmtree(design / "parts")
+    _loop(design / "parts")
+    assert main(["build", "design/presets/published.toml", "--out", "out"]) == 2
+    assert "design/parts: is no folder" in capsys.readouterr().err
+
+
+def test_a_base_that_is_a_pipe_is_named(design: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    os.mkfifo(design / "base.toml")
+    (design / "mine.toml").write_text('extends = "base.toml"\n')
+    assert "extends is 'base.toml', which is a pipe or device" in _refused(design, capsys)
+
+
+def test_wide_spaces_are_shown_as_they_are() -> None:
+    spaces = "a\u00a0b\u3000c"
+    assert str(Problem("f.toml", 1, "grid", f"{spaces}\x1b")) == f"f.toml:1: grid: {spaces}\\x1b"
 
 
 def test_an_empty_catalogue_names_what_it_lacks(

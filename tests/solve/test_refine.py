@@ -32,8 +32,8 @@ MakeTask = Callable[..., Task]
 class Bowl:
     """Judges whose error is least at 3.3 mm and 2.1 mm; a larger hole is dearer."""
 
-    def __init__(self, task: Task, refused_from_mm: float = 9.0) -> None:
-        self._task, self._refused_from_mm = task, refused_from_mm
+    def __init__(self, task: Task, refused_from_mm: float = 9.0, price: float = 1.0) -> None:
+        self._task, self._refused_from_mm, self._price = task, refused_from_mm, price
         self.designs: dict[Point, Judged] = {}
 
     def __call__(self, points: Sequence[Point]) -> list[Judged]:
@@ -50,7 +50,8 @@ class Bowl:
             return Judged(changes, columns, {}, ("too large",), 10.0)
         error = 1.0 + (hole_mm - 3.3) ** 2 + 3.0 * (silicone_mm - 2.1) ** 2
         error -= DEEPER * (columns[0] == 4)
-        figures = {"error": error, "cost": 40.0 + hole_mm, "current_ma": 10.0}
+        cost = self._price * (40.0 + hole_mm)
+        figures = {"error": error, "cost": cost, "current_ma": 10.0}
         excess = sum(max(share, 0.0) for share in excesses(figures, self._task.limits).values())
         return Judged(changes, columns, figures, (), excess)
 
@@ -92,6 +93,12 @@ def test_refused_designs_do_not_stop_it(make: MakeTask) -> None:
     bowl([(0, 1, 1)])
     refine(task, bowl.designs, bowl, 60)
     assert front(bowl.designs.values())[0].figures["error"] < 1.5
+
+
+def test_designs_that_cost_nothing_have_no_limit_of_their_own(make: MakeTask) -> None:
+    task = make()
+    bowl = Bowl(task, price=0.0)
+    assert _refined(bowl, task)["mask.hole_mm"] == pytest.approx(3.3, abs=0.051)
 
 
 def test_no_design_too_many_and_none_twice(make: MakeTask) -> None:

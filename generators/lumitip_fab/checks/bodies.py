@@ -27,9 +27,9 @@ VOLUME = 0.002  # of chords on curved faces
 _SCENE = 0.0002  # the same: a hole of another width is seen in the volume of all bodies
 Files = Mapping[str, manifest.Entry]
 Shapes = Mapping[Path, StepShape | OutputError]
-_known: dict[str, tuple[Measurement, ...]] = {}
-"""Of groups of files whose bytes and entries were the same before in this process: most parts stay
-as they were when one file has changed, and the CAD kernel is slow."""
+_held: dict[str, tuple[Measurement, ...]] = {}
+"""Of groups of files that held together before in this process, with the same bytes and entries:
+most parts stay as they were when one file has changed, and the CAD kernel is slow."""
 
 
 def measure(outputs: Path, _design: Design) -> Iterator[Measurement]:
@@ -38,16 +38,16 @@ def measure(outputs: Path, _design: Design) -> Iterator[Measurement]:
     if not files:
         yield unreadable("bodies.stl", manifest.NAME, "lists no file")
     keys = {group: _key(outputs, group, files) for group in _groups(files)}
-    new = [path for group, key in keys.items() if key not in _known for path in group]
+    new = [path for group, key in keys.items() if key not in _held for path in group]
     steps = [outputs / path for path in new if path.endswith(".step") and path in files]
     shapes = step_shapes(steps) if steps else {}
     for group, key in keys.items():
-        if key in _known:
-            yield from _known[key]
+        if key in _held:
+            yield from _held[key]
             continue
         measured = tuple(_group(outputs, group, files, shapes))
-        if not any(isinstance(shapes.get(outputs / path), OutputError) for path in group):
-            _known[key] = measured  # else the kernel may have had no time: it is asked again
+        if key and all(one.passed for one in measured):
+            _held[key] = measured
         yield from measured
 
 
@@ -65,8 +65,9 @@ def _groups(files: Files) -> Iterator[tuple[str, ...]]:
 
 
 def _key(outputs: Path, group: tuple[str, ...], files: Files) -> str:
-    """Stands for the bytes and entries of some files."""
-    return repr([(path, manifest.sha256_of(outputs / path), files.get(path)) for path in group])
+    """Stands for the bytes and entries of some files; empty if one cannot be read."""
+    hashes = [manifest.sha256_of(outputs / path) for path in group]
+    return repr([(path, files.get(path)) for path in group] + hashes) if all(hashes) else ""
 
 
 def _group(

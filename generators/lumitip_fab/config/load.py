@@ -185,6 +185,8 @@ def _base(chain: list[Source]) -> Source:
         )
     if base.is_dir():
         raise refuse(f"is {name!r:.80}, which is a folder. {_available(folder, own.path)}")
+    if base.exists() and not exists:
+        raise refuse(f"is {name!r:.80}, which is a pipe or device. {_available(folder, own.path)}")
     if not exists:
         near = difflib.get_close_matches(name, _bases(folder, own.path), n=1, cutoff=0.8)
         hint = f"Did you mean {near[0]!r}? " if near else ""

@@ -69,7 +69,8 @@ def _starts(
     points = {one.changes: point for point, one in designs.items()}
     for one in front(designs.values()):
         own = {name: one.figures[name] for name in ("cost", "current_ma")}
-        yield points[one.changes], task.limits.model_copy(update=own)
+        held = {name: most for name, most in own.items() if most > 0}  # a share of 0 is none
+        yield points[one.changes], task.limits.model_copy(update=held)
 
 
 class _Descent:

@@ -1,6 +1,5 @@
 """Deviations are found again from what the gauge shows."""
 
-import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,11 +9,13 @@ import pytest
 from acceptance_frames import Bench
 from lumitip.acceptance.gauge import Gauge
 from lumitip.acceptance.response import NAMES, Response
-from lumitip.acceptance.spread import DRIFT, LED, PLACEMENT_MM, spread
+from lumitip.acceptance.spread import BOARD_MM, DRIFT, LED, PLACEMENT_MM, spread
 from lumitip.acceptance.verdict import Judge
 from lumitip.links.twin import published_layout
 from lumitip.twin import HalfPlane, Misregistration, Model, Twin
 from lumitip.twin.built import Piece
+from lumitip_fab.config.load import load
+from lumitip_fab.derive.making.tolerances import spreads
 
 
 @pytest.mark.slow
@@ -79,11 +80,13 @@ def test_the_spread_of_parts_is_that_of_new_fingers(gauge: Gauge) -> None:
 
 
 def test_spreads_are_those_of_the_catalogue() -> None:
-    folder = Path(__file__).parents[3] / "design" / "parts"
-    of = tomllib.loads((folder / "tolerances.toml").read_text(encoding="utf-8"))
-    assert of["led"]["spread"] == LED
-    assert of["placement"]["spread"] == PLACEMENT_MM
-    assert of["drift"]["spread"] / 2.0 == DRIFT
+    config = load(Path(__file__).parents[3] / "design" / "presets" / "published.toml")
+    of = spreads(config)
+    assert of["led"] == LED
+    assert of["placement"] == PLACEMENT_MM
+    assert of["drift"] / 2.0 == DRIFT
+    assert config.catalogue.tolerances.board.distribution == "uniform"
+    assert np.hypot(of["board"] / 3**0.5, of["print"]) == pytest.approx(BOARD_MM, abs=0.001)
 
 
 def test_the_values_of_a_thin_edge_are_those_of_the_twin(gauge: Gauge) -> None:
