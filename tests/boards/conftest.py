@@ -48,19 +48,21 @@ diode = "auto"
 [breakout]
 board_mm = [45.72, 38.1]
 """
+DEFAULT = "fingertip"
 
 
 @pytest.fixture(scope="session")
 def designs(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Design]:
-    """`designs("dense")`: a preset's design; `"small"` is a grid of 13 cells on two muxes,
-    `"switched"` the same with a transistor that switches the LEDs, a power LED and protected
-    pins, `"panelled"` with panels."""
+    """`designs("dense")`: a preset's design; `"fingertip"` is the default's, `"small"` a grid of 13
+    cells on two muxes, `"switched"` the same with a transistor that switches the LEDs, a power LED
+    and protected pins, `"panelled"` with panels."""
     folder = tmp_path_factory.mktemp("designs") / "design"
     shutil.copytree(design_dir, folder)
     (folder / "presets" / "small.toml").write_text(SMALL)
     (folder / "presets" / "switched.toml").write_text(SWITCHED)
     (folder / "presets" / "panelled.toml").write_text(PANELLED)
-    return lambda preset: derive(load(folder / "presets" / f"{preset}.toml"))
+    own = {DEFAULT: folder / f"{DEFAULT}.toml"}
+    return lambda preset: derive(load(own.get(preset, folder / "presets" / f"{preset}.toml")))
 
 
 @pytest.fixture(scope="session")
@@ -72,7 +74,7 @@ def boards(
     """`boards("dense")`: a folder with a preset's boards and design. Do not change it."""
     return lambda preset: (
         once(preset, lambda out: _write(designs(preset), out))
-        if preset in ("small", "switched")
+        if preset in ("small", "switched", DEFAULT)
         else built(preset)
     )
 

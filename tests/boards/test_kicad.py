@@ -14,7 +14,8 @@ from lumitip_fab.checks.readers.kicad_board import read_board
 from programs import needs
 
 Boards = Callable[[str], Path]
-SLOW = ("published", "asymmetric", "dense", "mux16", "flex")
+SLOW = ("fingertip", "published", "asymmetric", "dense", "mux16", "flex")
+OTHERS = ("by_goals", "franka_hand", "robotiq_2f140", "wsg50")
 BOARDS = ("emitter", "receiver", "breakout", "flange")
 AUXILIARY_BOARDS = BOARDS[2:]
 MODULE = pytest.param("integrated", "flange", marks=pytest.mark.slow)  # controller on the flange
@@ -23,6 +24,12 @@ EVERY = (
     *(pytest.param(preset, name, marks=pytest.mark.slow) for preset in SLOW for name in BOARDS),
     MODULE,
 )
+ALL = (
+    *EVERY,
+    *(pytest.param("integrated", name, marks=pytest.mark.slow) for name in BOARDS[:2]),
+    *(pytest.param(preset, name, marks=pytest.mark.slow) for preset in OTHERS for name in BOARDS),
+)
+"""Every board of every preset."""
 ALLOWED: dict[str, str] = {}  # names of warnings, each with the reason why it may stand
 # What boards with finer copper than KiCad's defaults show of it.
 FINER = {"dense": {"clearance", "copper_edge_clearance", "drill_out_of_range", "via_diameter"}}
@@ -78,7 +85,7 @@ def test_kicad_finds_no_fault(
     assert {v["type"] for v in told["violations"]} <= set(ALLOWED), told["violations"][:3]
 
 
-@pytest.mark.parametrize(("preset", "name"), EVERY)
+@pytest.mark.parametrize(("preset", "name"), ALL)
 def test_kicad_finds_no_error_by_its_default_rules(
     boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, name: str
 ) -> None:

@@ -29,6 +29,7 @@ Body = tuple[str, tuple[float, ...]]
 BOARDS = ("emitter", "receiver", "breakout", "flange")
 EVERY = (
     *(("small", name) for name in BOARDS),
+    *(pytest.param("fingertip", name, marks=pytest.mark.slow) for name in BOARDS),
     pytest.param("integrated", "flange", marks=pytest.mark.slow),
 )
 NEAR_MM = 0.02

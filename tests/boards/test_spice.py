@@ -23,8 +23,8 @@ from lumitip_fab.design import Design, Electrical, Wiring
 from spice_runs import needs_ngspice, simulated
 
 SETTLED_COUNTS = 0.5  # of 255
-PRESETS = ("published", "asymmetric", "dense", "mux16")
-OWN_PULL_UPS = ("asymmetric", "mux16")
+PRESETS = ("published", "asymmetric", "dense", "mux16", "integrated", "../fingertip")
+OWN_PULL_UPS = ("../fingertip", "asymmetric", "mux16", "integrated")
 
 
 @pytest.fixture(scope="module")

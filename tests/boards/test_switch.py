@@ -1,6 +1,7 @@
 """The transistor that switches the LEDs: what is refused, and what its checks find damaged."""
 
 import math
+import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -102,7 +103,7 @@ def test_a_socket_whose_pin_is_at_another_net(folder: Path) -> None:
 
 
 def test_a_firmware_that_does_not_wait(folder: Path) -> None:
-    hurt(folder, HEADER, lambda text: text.replace("EMITTER_US 1", "EMITTER_US "))
+    hurt(folder, HEADER, lambda text: re.sub(r"EMITTER_US \d+", "EMITTER_US 370", text))
     assert "converter" in failing(folder, "firmware")
 
 

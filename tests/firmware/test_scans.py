@@ -27,6 +27,18 @@ def test_several_conversions_and_ambient_light(
     assert counts.split() == ["7", "8", "0"]
 
 
+OWN_PULL_UPS = (
+    "asymmetric",
+    "flex",
+    "franka_hand",
+    "integrated",
+    "mux16",
+    "robotiq_2f140",
+    "wsg50",
+)
+"""Presets whose photodetectors have a pull-up each."""
+
+
 @pytest.mark.parametrize(
     ("preset", "period_us", "defines", "waits"),
     [
@@ -75,6 +87,15 @@ def test_a_design_with_a_switch_has_time_for_both_scans(
     assert took_us - 15 * len(design.layout) >= 8 * shortest_us
     frame_us = 2 * (took_us + 15 * len(design.layout) + ambient.light_us) + 2750
     assert ambient.period_us - 500 < frame_us <= ambient.period_us
+
+
+@pytest.mark.parametrize("file", ["fingertip", *(f"presets/{name}" for name in OWN_PULL_UPS)])
+def test_cells_are_read_200_times_a_second(file: str, design_dir: Path) -> None:
+    """Each after the whole wait that its phototransistor needs."""
+    design = derive(load(design_dir / f"{file}.toml"))
+    channel, inputs = design.electrical.channel, 2 ** len(design.wiring.select_pins)
+    assert channel.wait_us is not None
+    assert inputs * channel.wait_us + len(design.layout) * CONVERSION_US <= 1e6 / 200
 
 
 def test_times_of_the_design_are_those_of_the_settings() -> None:

@@ -8,7 +8,7 @@ from lumitip_fab.design.electrical import AmbientScan, Channel
 
 RADIO_US, CONVERSION_US = 2750, 30
 """As in `settings.h` of the firmware: of a frame, for radio and USB; and of one conversion."""
-NEAR_COUNTS, COUNTS = 2.0, 255
+NEAR_COUNTS, COUNTS = 0.5, 255
 MOST_PERIOD_US = 65535
 """As `settings.h` and packets of the firmware allow."""
 STEP_US = 500
