@@ -26,6 +26,10 @@ def board_design(seed: int, index: int) -> Design:
             "receiver.photodetector": random.choice(list(entries("photodetectors"))),
             "receiver.multiplexer": random.choice(list(entries("multiplexers"))),
             "mask.hole_mm": round(HOLE_SHARE * pitch_mm, 1),
+            # "auto": the default's circuit, with a pull-up for each photodetector and a source for
+            # each string, where the board has room for it.
+            "receiver.load": random.choice(["auto", "shared"]),
+            "emitter.drive": random.choice(["auto", "resistor"]),
             # It has pins for any number of multiplexers.
             "controller.board": BENCH,
         }

@@ -138,6 +138,18 @@ def green_board(files: Files) -> None:
     edit(files, "fabrication.txt", b"matte black, on both", b"green, on both")
 
 
+def thin_copper(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"Copper: \S+", b"Copper: 18")
+
+
+def bare_copper(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"Surface: .*", b"Surface: none")
+
+
+def black_letters(files: Files) -> None:
+    edit(files, "fabrication.txt", b"Silkscreen: white", b"Silkscreen: black")
+
+
 def no_stop_line(files: Files) -> None:
     del files["STOP_READ_FIRST.txt"]
 
@@ -174,6 +186,9 @@ FIRST_DAMAGES: dict[Damage, set[str]] = {
     track_of_the_fabrication_note: {"fabrication"},
     drill_of_the_fabrication_note: {"fabrication"},
     green_board: {"fabrication"},
+    thin_copper: {"fabrication"},
+    bare_copper: {"fabrication"},
+    black_letters: {"fabrication"},
     no_stop_line: {"stop"},
     stop_line_of_other_parts: {"stop"},
     stop_line_names_others_below: {"stop"},

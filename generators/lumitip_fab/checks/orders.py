@@ -188,13 +188,19 @@ def _misordered(read: ReadBoard, note: str) -> Iterator[str]:
         figures["Narrowest track"] = (min(tracks),)
     if drills:
         figures["Smallest drill"] = (min(drills),)
+    finish, flexible = read.of.finish, read.flexible
+    copper_um = 1000 * flexible.copper_mm if flexible else finish.copper_um
+    figures["Copper"] = (copper_um,)
     lines: dict[str, str] = dict(re.findall(r"^(.+?): (.+)$", note, re.MULTILINE))
     for name, wanted in figures.items():
         stated = [float(figure) for figure in re.findall(r"[\d.]+", lines.get(name, ""))]
         if len(stated) != len(wanted) or not np.allclose(stated, wanted, atol=SIZE_MM):
             yield name
-    if read.of.finish.mask not in lines.get("Solder mask", lines.get("Coverlay", "")):
+    if finish.mask not in lines.get("Solder mask", lines.get("Coverlay", "")):
         yield "colour of the mask"
+    for name, word in (("Surface", finish.surface), ("Silkscreen", "white")):
+        if not re.fullmatch(rf"{re.escape(word)}(,.*)?", lines.get(name, "")):
+            yield name
 
 
 def _unstopped(read: ReadBoard, finger: Finger, files: _Files) -> Iterator[str]:
