@@ -6,6 +6,7 @@ from typing import Any
 CHANGES: dict[str, Any] = {
     "name": "Other",
     "revision": "B",
+    "date": "2024-02-29",
     "grid.columns": (3, 4, 5, 4, 5, 6, 5),
     "grid.pitch_mm": 5.9,
     "stack.floor_mm": 1.0,

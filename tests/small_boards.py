@@ -51,6 +51,7 @@ def board(
         name="receiver",
         title="small",
         revision="A",
+        date="",
         design_hash="",
         outline=Box(-width_mm / 2, width_mm / 2, -5, 5),
         corner_mm=0.5,

@@ -188,13 +188,14 @@ def test_what_is_ordered_has_its_numbers(drawn: Drawn, board: tuple[str, str]) -
         assert fields["Datasheet"] == ""
 
 
-def test_the_title_block_has_revision_and_hash_but_no_date(drawn: Drawn) -> None:
-    """A design has no date: the same design gives the same bytes on each day."""
+def test_the_title_block_has_date_revision_and_hash_of_the_design(drawn: Drawn) -> None:
+    """The date is written in the parameter file: the same file gives the same bytes on each day."""
     design, placed, sheet = drawn(("published", "flange"))
     block = child(read_nodes(sheet), "title_block") or []
     assert words(child(block, "rev")) == [placed.revision]
     assert words(child(block, "comment")) == ["1", f"Design {placed.design_hash}"]
-    assert child(block, "date") is None
+    assert words(child(block, "date")) == [design.title.date]
+    assert re.fullmatch(r"\d{4}-\d\d-\d\d", design.title.date)
     assert schematic_files(placed, design) == schematic_files(placed, design)
 
 

@@ -115,7 +115,7 @@ def test_a_changed_limit_changes_the_parameters_hash_alone(
 @pytest.mark.parametrize(
     "changes",
     [
-        {"controller.name": "Renamed", "name": "Renamed", "revision": "Z"},
+        {"controller.name": "Renamed", "name": "Renamed", "revision": "Z", "date": ""},
         {"mask.measured_ruler_mm": (99.2, 100.4)},
         {"mask.hole_mm": 2.0, "mask.hole_shape": "circle"},
         {"mask.cell_holes_mm": (2.0, *(2.5,) * 31)},

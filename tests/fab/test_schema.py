@@ -84,10 +84,10 @@ def test_every_field_has_the_published_value_as_its_default(
     assert _property(schema, field)["default"] == wanted
 
 
-def test_name_and_revision_have_defaults_too(
+def test_name_revision_and_date_have_defaults_too(
     schema: dict[str, Any], published: dict[str, Any]
 ) -> None:
-    for field in ("name", "revision"):
+    for field in ("name", "revision", "date"):
         assert schema["properties"][field]["default"] == published[field]
 
 

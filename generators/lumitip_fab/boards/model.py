@@ -94,6 +94,8 @@ class Placement:
     """Name of its folder and its files."""
     title: str
     revision: str
+    date: str
+    """Of the revision; empty for none."""
     design_hash: str
     outline: Box
     corner_mm: float

@@ -71,6 +71,7 @@ def _printed(design: Design, board: AuxiliaryBoard, cells: Cells | None = None) 
         name=board.name,
         title=title.on_boards().name,
         revision=title.revision,
+        date=title.date,
         design_hash=design.reading.design_hash,
         outline=board.box,
         corner_mm=board.corner_mm,

@@ -14,7 +14,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from lumitip_fab.catalogue.record import NAME, PIN, TITLE
-from lumitip_fab.config.parameters import REVISION
+from lumitip_fab.config.parameters import DATE, REVISION
 from lumitip_fab.config.source import Source
 from lumitip_fab.errors import Problem
 
@@ -49,6 +49,7 @@ _PATTERNS = {
     TITLE: "letters of Latin-1, digits, spaces and any of . , + - / ( ), beginning with a letter "
     "or digit,",
     PIN: "1 to 16 letters, digits or _, beginning with a letter,",
+    DATE: 'year, month and day as in "2026-11-28", or nothing',
     REVISION: "1 to 8 letters, digits, dots or hyphens",
 }
 

@@ -21,6 +21,7 @@ from lumitip_fab.config import sections
 from lumitip_fab.config.mask import Mask
 
 REVISION = r"^[A-Za-z0-9.\-]{1,8}$"
+DATE = r"^(\d{4}-(0[1-9]|1[0-2])-(0[1-9]|[12]\d|3[01]))?$"
 Gap = Annotated[float, Field(ge=0, le=20)]
 Column = Annotated[int, Field(ge=1, le=256)]
 
@@ -261,6 +262,9 @@ class Parameters(Strict):
     letters."""
     revision: Annotated[str, Field(pattern=REVISION)]
     """Revision of the design, on boards and drawings."""
+    date: Annotated[str, Field(pattern=DATE)] = ""
+    """Date of the revision, such as "2026-11-28", in the title blocks of boards and schematics;
+    empty for none. It is yours to change: the same file gives the same bytes on each day."""
     grid: Grid
     stack: Stack
     outline: Outline

@@ -159,7 +159,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     )
     return round_trip(
         Design(
-            title=Title(p.name, p.revision),
+            title=Title(p.name, p.revision, p.date),
             grid=Grid(p.grid.columns, p.grid.pitch_mm),
             layout=layout,
             stack=stack,

@@ -88,6 +88,7 @@ class Title:
 
     name: str
     revision: str
+    date: str = ""
 
     def on_boards(self) -> "Title":
         """As a silkscreen shows it."""

@@ -225,6 +225,7 @@ def _title(board: Placement) -> sexpr.Node:
     return (
         "title_block",
         ("title", sexpr.Quoted(board.title)),
+        ("date", sexpr.Quoted(board.date)),
         ("rev", sexpr.Quoted(board.revision)),
         ("comment", 1, sexpr.Quoted(f"Design {board.design_hash}")),
         ("comment", 2, sexpr.Quoted(f"{board.name} board, seen from its front with the tip up")),

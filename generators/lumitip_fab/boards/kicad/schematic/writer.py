@@ -50,6 +50,7 @@ class _Writer:
         whole.uuid.value = stable_uuid(board.name, "sheet")
         whole.paper.value = paper
         whole.title_block.title.value = f"{board.title}: {board.name}"
+        whole.title_block.date.value = board.date
         whole.title_block.rev.value = board.revision
         whole.title_block.comment.value = [1, f"Design {board.design_hash}"]
         for i, at in enumerate(sheet.junctions):
