@@ -38,6 +38,7 @@ indicator = "auto"
 """
 BOARDS = (
     *(("published", name) for name in ("flange", "breakout", "emitter", "receiver")),
+    *(("../fingertip", name) for name in ("flange", "breakout", "emitter", "receiver")),
     *(("integrated", name) for name in ("flange", "receiver")),
     *(("five volts", name) for name in ("flange", "breakout")),
     ("mux16", "breakout"),
@@ -174,18 +175,20 @@ def test_pins_have_their_types(drawn: Drawn) -> None:
 @pytest.mark.slow_cases
 @pytest.mark.parametrize("board", AUXILIARY, ids="-".join)
 def test_what_is_ordered_has_its_numbers(drawn: Drawn, board: tuple[str, str]) -> None:
-    """The data sheet stays empty: the catalogue names sources, and has no addresses."""
+    """And the address of its data sheet, where the catalogue has it."""
     _, placed, sheet = drawn(board)
     parts = {part.ref: part for part in placed.components if part.nets}
     for symbol in children(read_nodes(sheet), "symbol"):
         fields = _properties(symbol)
         part = parts.get(fields["Reference"])
+        assert fields["Datasheet"] == (part.datasheet if part else "")
         if part is None or not part.part:
             assert fields.keys().isdisjoint({"MPN", "Manufacturer", "LCSC"})
         else:
             assert (fields["MPN"], fields["Manufacturer"]) == (part.part, part.manufacturer)
             assert fields.get("LCSC", "") == part.lcsc
-        assert fields["Datasheet"] == ""
+    if board in (("published", "flange"), ("../fingertip", "flange")):
+        assert any(part.kind == "regulator" and part.datasheet for part in parts.values())
 
 
 def test_the_title_block_has_date_revision_and_hash_of_the_design(drawn: Drawn) -> None:

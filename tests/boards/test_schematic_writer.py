@@ -145,7 +145,8 @@ def _all_is_there(written: Written) -> None:
         fields = {words(field)[0]: words(field)[1] for field in children(node, "property")}
         part = parts.get(fields["Reference"])
         footprint = f"lumitip:{part.footprint.name}" if part else ""
-        assert (fields["Footprint"], fields["Datasheet"]) == (footprint, "")
+        assert fields["Footprint"] == footprint
+        assert fields["Datasheet"] == (part.datasheet if part else "")
         ordered = (part.manufacturer, part.part) if part and part.part else (None, None)
         assert (fields.get("Manufacturer"), fields.get("MPN")) == ordered
         numbered = part.lcsc if part and part.part and part.lcsc else None

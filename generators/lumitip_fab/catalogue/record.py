@@ -73,6 +73,9 @@ class Ordered(Strict):
     """Order number; for resistors, `{code}` stands for the value, such as 75K or 4K99."""
     lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
     """Number at the distributor LCSC, which JLCPCB uses; empty where it is not known."""
+    datasheet: str = Field(default="", max_length=200, pattern=r"^(https?://[!-~]+)?$")
+    """Address of the maker's data sheet, for the field that KiCad opens; empty where it is not
+    known."""
 
 
 class OrderedByValue(Ordered):

@@ -35,6 +35,7 @@ def mounted(
         part=entry.order_number,
         manufacturer=entry.manufacturer,
         lcsc=entry.lcsc,
+        datasheet=entry.datasheet,
         footprint=shape,
         x_mm=at[0],
         y_mm=at[1],
