@@ -84,7 +84,24 @@ def edge_beyond_the_antenna(text: str) -> str:
     )
 
 
+def _renamed(text: str, old: str, new: str) -> str:
+    """Every track of one net as one of the other."""
+    numbers = {name: number for number, name in re.findall(r'\(net (\d+) "(.*?)"\)', text)}
+    pattern = rf"(\(segment .*\(net ){numbers[old]}\)"
+    return re.sub(pattern, rf"\g<1>{numbers[new]})", text)
+
+
+def switched_tracks_at_the_crystal(text: str) -> str:
+    return _renamed(text, "XL1", "SW")
+
+
+def supply_along_the_edge(text: str) -> str:
+    return _renamed(text, "D-", "5V")
+
+
 DAMAGES: dict[Damage, set[str]] = {
+    switched_tracks_at_the_crystal: {"crystal", "short", "supply_width"},
+    supply_along_the_edge: {"supply_edge", "supply_width", "short"},
     track_under_the_antenna: {"keep_out"},
     via_under_the_antenna: {"keep_out"},
     rule_missing: {"keep_out_rule"},

@@ -245,6 +245,7 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     board_copper.measure_spokes,
     board_copper.measure_supplies,
     board_copper.measure_hot_loop,
+    board_copper.measure_crystal,
     board_copper.measure_keep_outs,
     measure_prints,
     measure_labels,

@@ -18,6 +18,11 @@ HOT_LOOP_MM2 = 6.0
 HOT_TRACK_MM = 3.0
 GROUND_SHARE = 80.0  # of the loop, in percent
 ANTENNA_EDGE_MM = 0.5
+SUPPLY_EDGE_MM = 1.0
+"""Twice what any copper keeps: the edge is where screws, fingers and burrs are."""
+CRYSTAL_MM = 3.0
+"""From the crystal's copper to that which a regulator switches: about twice the board's thickness,
+assumed."""
 LEAST_SPOKES = 2
 """Default of `min_resolved_spokes` of KiCad 6 to 10."""
 _BESIDE_MM = 0.1  # from the pad, inside its thermal gap
@@ -80,13 +85,32 @@ def measure_joined(read: ReadBoard) -> Iterator[Measurement]:
 
 
 def measure_supplies(read: ReadBoard) -> Iterator[Measurement]:
-    """Width of the tracks of supplies, which are wide but where ground's pour does the work."""
+    """Tracks of supplies: wide, but where ground's pour does the work, and away from the edge."""
     if read.auxiliary is None:
         return
     wide = {net for net in read.auxiliary.supplies if net != "GND"}
-    widths = [c.width_mm for c in read.board.loose if c.kind == "track" and c.net in wide]
-    least = read.design.rules.supply_track_mm
-    yield read.figure("supply_width", min(widths, default=math.nan), least, math.inf)
+    tracks = [c for c in read.board.loose if c.kind == "track" and c.net in wide]
+    narrowest = min((c.width_mm for c in tracks), default=math.nan)
+    yield read.figure("supply_width", narrowest, read.design.rules.supply_track_mm, math.inf)
+    near = min((c.area.distance(read.outline.boundary) for c in tracks), default=math.nan)
+    yield read.figure("supply_edge", near, SUPPLY_EDGE_MM, math.inf)
+
+
+def measure_crystal(read: ReadBoard) -> Iterator[Measurement]:
+    """How far a crystal is from what a regulator switches, copper to copper."""
+    parts = [(d.kind, {net for _, net in d.nets}) for d in read.components]
+    quiet, coil, smoothed = (
+        set().union(*(nets for kind, nets in parts if kind == wanted and among <= nets))
+        for wanted, among in (("crystal", set()), ("inductor", set()), ("capacitor", {"GND"}))
+    )
+    if not quiet:
+        return
+    switched = coil - smoothed
+    areas = [
+        shapely.union_all([c.area for c in read.board.copper() if c.net in of])
+        for of in (quiet, switched)
+    ]
+    yield read.figure("crystal", areas[0].distance(areas[1]), CRYSTAL_MM, math.inf)
 
 
 def _gap(read: ReadBoard, least_mm: float) -> Measurement:
