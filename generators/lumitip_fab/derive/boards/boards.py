@@ -21,7 +21,7 @@ from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.derive.boards import bulk, connectors, led_switch, placing
 from lumitip_fab.derive.boards.packages import flexible_board
 from lumitip_fab.derive.boards.sources import source_parts
-from lumitip_fab.derive.boards.ties import finger_ties
+from lumitip_fab.derive.boards.ties import OPEN_MM, finger_ties
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import Cells, bending_lines, derive_turned, refuse_lines
 from lumitip_fab.derive.finger.stack import foot_half_mm, is_flex, roof_mm
@@ -151,7 +151,11 @@ def _frame(
     fits = half - rim - p.board.hole_mm / 2 - NOTCH_BESIDE_MM
     wide = ways <= connectors.MOST_WIDE_WAYS and connectors.half_width_mm(ways, True) <= fits
     wires_half = connectors.half_width_mm(ways, wide)
-    notch_half = max(wires_half + NOTCH_BESIDE_MM, gripper.seat_width_mm / 2 + SEAT_CLEARANCE_MM)
+    # Wide enough for a thread's holes at the row's ends, where the board need not grow for it.
+    tied_half = wires_half + OPEN_MM
+    tied = not is_flex(p) and tied_half + p.printer.min_wall_mm + pin_mm / 2 + rim <= half
+    beside = tied_half if tied else wires_half + NOTCH_BESIDE_MM
+    notch_half = max(beside, gripper.seat_width_mm / 2 + SEAT_CLEARANCE_MM)
     foot_half = foot_half_mm(config, notch_half)
     least_hole_x = notch_half + p.printer.min_wall_mm + pin_mm / 2
     if is_flex(p):

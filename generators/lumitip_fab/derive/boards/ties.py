@@ -16,6 +16,8 @@ HOLE_MM = 1.6
 """For a waxed thread of 1 mm, which passes twice, or a bare wire."""
 GAP_MM = 0.35
 """Hole to pads and bodies: more than `Rules.hole_gap_mm` of any design."""
+OPEN_MM = GAP_MM + HOLE_MM + 0.01
+"""Plate open beyond the pads of a finger's row, so that holes at its ends have room."""
 WEB_MM = 1.0
 """Board between a hole and the edge, or another hole: as thick as it is wide."""
 NEAR_EDGE_MM = 6.0
