@@ -173,7 +173,7 @@ def _wrong_figures(manual: Manual, design: Design) -> list[str]:
         "wires": str(sum(len(cable.wires) for cable in design.cabling.cables)),
         "gripper": design.mount.title,
         "its force, at most": f"{design.strength.rated_force_n:g} N",
-        "bolts for each finger": f"{len(design.mount.bolt_u_mm)} x {design.mount.bolt} x "
+        "finger bolts, for each finger": f"{len(design.mount.bolt_u_mm)} x {design.mount.bolt} x "
         f"{design.mount.bolt_length_mm:g}",
         "warm-up": f"{_WARM_UP_MIN:g} min",
     }

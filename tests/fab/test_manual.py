@@ -167,6 +167,33 @@ def test_the_force_that_a_finger_bears_is_named_before_the_gripper_closes(copied
     assert limit < mount.index("screw each finger on") < mount.index("open and close the gripper")
 
 
+@pytest.mark.parametrize("preset", PRESETS)
+def test_a_thing_has_one_name(built: Callable[[str], Path], preset: str) -> None:
+    folder = built(preset)
+    design = read_design(folder / "design.json")
+    front, *steps = plain(folder).split("You need:")
+    assert ("coupling" in " ".join([front, *steps])) == bool(design.flanges)
+    assert ("on the gripper: " in front) and "finger bolt" in front
+    for text in steps:
+        assert not re.search(r"gripper's (own )?bolts?\b|the coupling towards", text)
+    printed = next(text for text in steps if "fit/fit_plate.3mf" in text)
+    assert ("a board goes into a coupon" in printed) == bool(design.fit_plate.corners)
+
+
+def test_what_cuts_and_what_looks_closer_is_among_the_tools(copied: Path) -> None:
+    tools = plain(copied).partition("Used up.")[0]
+    needs = " ".join(re.findall(r"You need:(.*?)Time:", plain(copied)))
+    for tool in ("a lens", "safety glasses", "thin sheet metal", "calipers"):
+        assert tool in tools and tool in needs, tool
+    run = " ".join(chapter(copied, "Warm-up and calibration").split())
+    assert "the gauge card, thin sheet metal, calipers" in run and "25 min" in run
+
+
+def plain(folder: Path) -> str:
+    text = (folder / HTML).read_text(encoding="utf-8")
+    return " ".join(re.sub(r"<style>.*?</style>|<[^>]*>", " ", text, flags=re.DOTALL).split())
+
+
 @pytest.mark.parametrize(
     ("gripper_n", "said"),
     [(0.0, "is in its maker's data sheet"), (30.0, "closes with up to 30 N.")],
@@ -206,14 +233,16 @@ def test_mounting_is_a_numbered_list_from_the_robot_to_the_fingers(copied: Path)
     (work,) = re.findall(r"<ol>(.*?)</ol>", chapter(copied, "Mount"), re.DOTALL)
     order = [
         "off",
+        "Choose the gripper's cable",
         "Press the socket",
         "Take the gripper off",
         "flange_upper",
         "Put the flange",
-        "Connect the gripper",
         "holder.3mf",
+        "Connect the gripper",
+        "plug the socket of W3",
     ]
-    order += ["Plug the socket", "activate the gripper", "Tie each finger", "screw each finger"]
+    order += ["activate the gripper", "Tie each finger", "screw each finger"]
     order += ["open and close"]
     assert sorted(order, key=work.index) == order
     assert work.count("<li>") >= len(order)
@@ -221,7 +250,7 @@ def test_mounting_is_a_numbered_list_from_the_robot_to_the_fingers(copied: Path)
 
 def test_the_gripper_s_bolts_have_a_standard_length(copied: Path) -> None:
     (flange,) = read_design(copied / "design.json").flanges
-    _, lengths = chapter(copied, "Mount").split("Length of the gripper's bolts")
+    _, lengths = chapter(copied, "Mount").split("Length of the flange bolts")
     cells = re.findall(r"<td[^>]*>([^<]*)</td>", lengths)
     rows = [cells[at : at + 4] for at in range(0, len(cells), 4)]
     assert len(rows) == 4

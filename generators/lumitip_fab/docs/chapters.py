@@ -6,8 +6,7 @@ from dataclasses import replace
 from itertools import count
 from typing import Any
 
-from lumitip_fab.design import Design, HeatStep, Mask, Mould, Packages
-from lumitip_fab.design.cabling import plugged_headers
+from lumitip_fab.design import Design, Mask, Packages
 from lumitip_fab.docs.bring_up import first_test
 from lumitip_fab.docs.casting import (
     amounts_of_both,
@@ -16,6 +15,7 @@ from lumitip_fab.docs.casting import (
     silicone_mix,
     volume_ml,
 )
+from lumitip_fab.docs.front import WARM_UP_MIN, front
 from lumitip_fab.docs.mounting import mounting
 from lumitip_fab.docs.orders import amount, money
 from lumitip_fab.docs.page import html_page
@@ -27,8 +27,8 @@ from lumitip_fab.docs.wrapping import mask_facts, wrapping_steps
 from lumitip_fab.pipeline.artefact import Artefact, Files
 from lumitip_fab.text import as_written, passage
 
-WARM_UP_MIN = 5
-"""Until the readings stand still: Table I of the published sensor (arXiv 2306.05902)."""
+RUN_MIN, ACCEPT_MIN = 15, 10
+"""How long calibration takes, and the test with the gauge card (assumed)."""
 WEAR_GRASPS = 100
 """After about so many grasps the published sensor's silicone had worn above the LEDs."""
 _PROBE_V = 0.15  # less than at the working current: a diode test drives about 1 mA
@@ -39,7 +39,7 @@ _HEADING = re.compile(r"^(#+) ", re.MULTILINE)
 def manual_text(design: Design, files: Files) -> str:
     """The whole manual. An image stands alone in its paragraph; its path is below the outputs."""
     chapters = (
-        _front(design),
+        front(design),
         _bought(design, files),
         _boards(design, files),
         _printed(design, files),
@@ -57,68 +57,6 @@ def manual_text(design: Design, files: Files) -> str:
     numbers = count(1)
     joined = _joined(chapter.strip() for chapter in chapters) + "\n"
     return _STEP.sub(lambda _: f"## {next(numbers)}. ", joined)
-
-
-def _front(design: Design) -> str:
-    return _text(
-        "front",
-        title=as_written(design.title.name),
-        revision=design.title.revision,
-        mould=design.mould,
-        printing=design.printing,
-        wiring=design.wiring,
-        mount=design.mount,
-        mask_rows=_mask_rows(design.mask),
-        lit_ma=sum(design.wiring.current_ma),
-        wires=sum(len(cable.wires) for cable in design.cabling.cables),
-        bolts=len(design.mount.bolt_u_mm),
-        rated_n=design.strength.rated_force_n,
-        warm_up_min=WARM_UP_MIN,
-        keys=_keys(design),
-        nozzle_mm=design.slicing.nozzle_mm,
-        board_tools=_board_tools(design),
-        mask_tools=_text(f"tools_{design.mask.route}", soften_c=design.mask.soften_c),
-        waiting=_waiting(design.mould),
-        heated="\n".join(map(_heated, design.heat)),
-    )
-
-
-def _board_tools(design: Design) -> str:
-    """For a socket on wires, a board that is tied on, and a smooth film."""
-    plugs = plugged_headers(design.cabling.cables, design.auxiliary_boards)
-    tools = ["a small vice"] * bool(plugs) + ["a needle"] * bool(design.interfaces)
-    tools += ["a cutting mat, a plastic card"] * bool(design.mould.inserts)
-    return "".join(f", {tool}" for tool in tools)
-
-
-def _waiting(mould: Mould) -> str:
-    """Hours that something hardens, one after the other."""
-    glued = [f"{mould.glue_hard_h:g} h for the glue"] if mould.glue_hard_h else []
-    cures = [f"{mould.cure_h:g} h for {what}" for what in ("a trial of the silicone", "the skin")]
-    return ", then ".join(glued + cures)
-
-
-def _keys(design: Design) -> str:
-    """Sizes of all screws."""
-    others = {holder.screw for holder in design.holders}
-    others |= {clamp.screw.name for clamp in design.clamps}
-    others |= {thread for flange in design.flanges for thread in (flange.screw, flange.bolt)}
-    return ", ".join(sorted({design.mount.bolt, *others}))
-
-
-def _mask_rows(mask: Mask) -> str:
-    """Material of the mask, and the temperature of its folds if they are creased."""
-    if mask.route == "tpu":
-        return f"| mask, printed | {mask.material} |"
-    return f"| film | {mask.film} |\n| creasing the film, off the finger | {mask.soften_c:g} °C |"
-
-
-def _heated(step: HeatStep) -> str:
-    weakest = step.weakest
-    return (
-        f"| {step.name} | {step.place} | {step.temperature_c:g} °C "
-        f"| {weakest.limit_c:g} °C ({weakest.name}: {as_written(weakest.material)}) |"
-    )
 
 
 def _bought(design: Design, files: Files) -> str:
@@ -174,6 +112,7 @@ def _boards(design: Design, files: Files) -> str:
         "boards",
         zips="\n".join(f"- `boards/{name}/order/`: {name}" for name in names),
         panels=_panels(design),
+        breaking=", pliers, small files, safety glasses" * bool(design.panels),
         polarity=polarity_test(design.packages),
         protection=protection_note(design),
         last=", then the string resistors on the back of the emitter" if behind else "",
@@ -227,9 +166,15 @@ def _printed(design: Design, files: Files) -> str:
     lines = files.text("print/printing.md").splitlines()
     made = [line for line in lines if design.mask.route == "tpu" or "| `mask/" not in line]
     note = _included("\n".join(made))
-    tried = _text("tried_corner" if design.fit_plate.corners else "tried_slice")
+    corners = design.fit_plate.corners
     return _text(
-        "printed", note=note, moulds=heights(design), filaments=_filaments(design), tried=tried
+        "printed",
+        note=note,
+        moulds=heights(design),
+        filaments=_filaments(design),
+        tried=_text("tried_corner" if corners else "tried_slice"),
+        tried_with="a finger bolt" + ", a board without wires" * bool(corners),
+        signs=_text("signs_corner" if corners else "signs_slice"),
     )
 
 
@@ -254,8 +199,15 @@ def _masked(design: Design, files: Files) -> Iterator[str]:
 
 def _run(design: Design) -> str:
     """Warm-up, tare, and the test with the gauge card where there is one."""
-    accepted = "\n" + _text("accepted").strip() if design.gauge_cards else ""
-    return _text("run", warm_up_min=WARM_UP_MIN, accepted=accepted)
+    cards = len(design.gauge_cards)
+    values = {"accept_min": ACCEPT_MIN, "thickness_mm": design.stack.thickness_mm}
+    return _text(
+        "run",
+        warm_up_min=WARM_UP_MIN,
+        minutes=RUN_MIN + ACCEPT_MIN * cards,
+        gauged=", the gauge card, thin sheet metal, calipers" * cards,
+        accepted="\n" + _text("accepted", **values).strip() if cards else "",
+    )
 
 
 def _kept(mask: Mask) -> str:

@@ -4,7 +4,7 @@ bolts must be."""
 from collections.abc import Iterator
 
 from lumitip_fab.design import AuxiliaryBoard, Design, Flange
-from lumitip_fab.design.cabling import INPUT_END, front_headers, plugged_headers
+from lumitip_fab.design.cabling import INPUT_END, front_headers, gripper_headers, plugged_headers
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
 from lumitip_fab.docs.wiring import listed
 from lumitip_fab.text import passage
@@ -36,6 +36,7 @@ def _needs(design: Design) -> Iterator[str]:
     yield "side cutters"
     if design.flanges:
         yield f"a soldering iron, solder, a multimeter, {design.strength.glue}, nitrile gloves"
+        yield "safety glasses"
     if design.electrical.indicators:
         yield "a bench supply"
     if _plugs(design):
@@ -51,18 +52,21 @@ def _work(design: Design) -> Iterator[str]:
     """From the robot to the fingers."""
     mount = design.mount
     yield _text("switched_off")
+    if design.flanges:
+        yield _chosen(design)
     for header, cable in _plugs(design):
-        yield _text("socketed", cable=cable, header=header)
+        own = gripper_headers(design.auxiliary_boards)
+        shared = _text("shared", header=header) if header in own else ""
+        yield _text("socketed", cable=cable, header=header, shared=shared)
     for flange in design.flanges:
         yield from _flanged(design, flange)
-    if design.flanges:
-        yield _passed_on(design)
     for holder in design.holders:
         yield _text("in_holder", holder=holder, screws=len(holder.holes))
     if not design.holders and any(board.name == "breakout" for board in design.auxiliary_boards):
         yield _text("beside_gripper", mount=mount)
-    for header, cable in _plugs(design):
-        yield _text("plugged", cable=cable, header=header)
+    if design.flanges:
+        plugs = [_text("plugged", cable=cable, header=header) for header, cable in _plugs(design)]
+        yield _text("connected", sockets="".join(plugs))
     yield _text("activated", rated_n=design.strength.rated_force_n, greatest=_greatest(design))
     if mount.lugs:
         yield _text("tied")
@@ -117,8 +121,8 @@ def _powered(design: Design) -> Iterator[str]:
                 return
 
 
-def _passed_on(design: Design) -> str:
-    """Where the gripper's supply and lines are: on the headers of the flange's board."""
+def _chosen(design: Design) -> str:
+    """The gripper's cable, and where its supply and lines are on the flange's board."""
     board = _flange(design)
     headers = front_headers(board)
     raw = _raw(design)
@@ -126,7 +130,7 @@ def _passed_on(design: Design) -> str:
     supply = _text("from_robot", pads=listed(pads), volts=_volts(raw)) if pads else ""
     own = [part.ref for part in headers if {net for _, net in part.nets} - {*board.supplies}]
     lines = _text("lines", lines=listed(own)) if own else ""
-    return _text("passed_on", supply=supply or _text("behind_fuse"), lines=lines)
+    return _text("chosen", supply=supply or _text("behind_fuse"), lines=lines)
 
 
 def _raw(design: Design) -> str:
@@ -162,7 +166,7 @@ def _plugs(design: Design) -> list[tuple[str, str]]:
 
 
 def _lengths(flange: Flange) -> str:
-    """The rule for the gripper's bolts, with examples."""
+    """The rule for the flange bolts, with examples."""
     rows = []
     for own_mm in OWN_MM:
         least_mm = own_mm + flange.top_z_mm

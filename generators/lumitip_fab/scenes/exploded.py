@@ -84,7 +84,7 @@ def _layers(bodies: Bodies, stack: Stack, outline: Outline) -> list[Layer]:
         "interface": ("Interface", "printed, glued to the backing"),
         "backing": (
             f"Backing, {stack.plate_mm:g} mm",
-            "printed, with coupling" if sunk else "printed, bends",
+            "printed, with its block" if sunk else "printed, bends",
         ),
         "board": (
             f"Board, {stack.pcb_mm:g} mm",

@@ -34,7 +34,10 @@ def plate_view(printed: Mesh, plate: FitPlate) -> str:
     side = plate.slice_at[0] - part.x_min_mm + x_mm, plate.slice_at[1] - part.centre_mm[1]
     labels = [
         (("Value", "of the coupon, in 0.01 mm"), _at(eye, *value)),
-        (("Slice", "for the gripper's bolts and pins"), _at(eye, *side, plate.thickness_mm)),
+        (
+            ("Slice", "for a finger bolt and the gripper's pins"),
+            _at(eye, *side, plate.thickness_mm),
+        ),
     ]
     for corner in plate.corners:
         face = corner.x_max_mm + x_mm - _IN_MM, corner.origin_mm[1], corner.height_mm / 2

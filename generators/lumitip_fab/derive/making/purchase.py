@@ -117,7 +117,7 @@ def _controller(config: Input, prices: Prices) -> list[Bought]:
 def _bolts(mount: Mount, packs: Mapping[str, Pack]) -> list[Bought]:
     item = f"{mount.bolt} x {mount.bolt_length_mm:g} socket head screw"
     into = mount.bolt_length_mm - mount.land_mm
-    where = f"fingers to gripper, {into:.1f} mm into its thread: measure how deep that is"
+    where = f"finger bolts, {into:.1f} mm into its thread: measure how deep that is"
     count, name = 2 * len(mount.bolt_u_mm), f"{mount.bolt} socket head screw"
     return [_fastener(item, "ISO 4762", where, count, name, packs)]
 
@@ -147,14 +147,14 @@ def _screws(holder: Holder, packs: Mapping[str, Pack]) -> list[Bought]:
 
 
 def _of_flange(config: Input, flange: Flange, packs: Mapping[str, Pack]) -> list[Bought]:
-    """Screws of its board, its locating pin, and the gripper's bolts, which must be longer."""
+    """Screws of its board, its locating pin, and its bolts, longer than the gripper's own."""
     count = len(flange.screws)
     through = flange.board_z_mm - flange.seat_z_mm + stiff_mm(config.parameters)
     length = screw_length_mm(through, config.catalogue.fasteners[flange.screw])
     screw = f"{flange.screw} x {length:g} countersunk screw"
     pin = f"{flange.pin_mm:g} x {flange.pin_length_mm:g} parallel pin"
     bolt, nut = f"{flange.bolt} socket head screw", f"{flange.screw} nut"
-    longer = f"gripper to robot, {flange.top_z_mm:.1f} mm longer than its own"
+    longer = f"flange bolts, {flange.top_z_mm:.1f} mm longer than the gripper's own"
     where = "board of the flange"
     rows = (
         (screw, "ISO 7046", where, count, f"{flange.screw} screw"),
