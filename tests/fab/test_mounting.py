@@ -11,7 +11,9 @@ import pytest
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
+from lumitip_fab.design.cabling import front_headers
 from lumitip_fab.docs.bring_up import first_test
+from lumitip_fab.docs.flange import flange_step
 from lumitip_fab.docs.mounting import mounting
 from lumitip_fab.docs.protection import protection_note
 from lumitip_fab.docs.spec import choice_rows, rows
@@ -26,20 +28,54 @@ def written(inputs: dict[str, Input], vary: Any) -> Written:
     return lambda changes=None, preset="published": derive(vary(inputs[preset], changes or {}))
 
 
+def steps(design: Design) -> str:
+    """Both steps, of the flange and of mounting."""
+    flanges = (flange_step(design, flange) for flange in design.flanges)
+    return words(" ".join([*flanges, mounting(design)]))
+
+
 def words(text: str) -> str:
     return " ".join(text.split())
 
 
 def test_the_gripper_gets_the_supply_before_the_fuse(written: Written) -> None:
-    step = words(mounting(written()))
+    step = steps(written())
     assert "The robot's lines are on J2. Its 24 V are on J3.7 and J3.8, before the fuse" in step
     work = ["Choose the gripper's cable", "wires in the same socket", "Take the gripper off"]
     work += ["Connect the gripper with its cable, and plug the socket of W3 in at J3"]
     assert sorted(work, key=step.index) == work
 
 
+def test_each_contact_of_a_socket_has_what_it_carries_and_its_wire(written: Written) -> None:
+    for preset in ("published", "integrated"):
+        design = written({}, preset)
+        board = next(b for b in design.auxiliary_boards if b.name == "flange")
+        (flange,) = design.flanges
+        table = flange_step(design, flange).split("### Contacts of the sockets")[1]
+        rows = re.findall(r"^\| (J\d+) \| (.*?) \| (.*?) \| (.*?) \|$", table, re.MULTILINE)
+        shown = {(ref, pin): net for ref, pins, net, _ in rows for pin in pins.split(", ")}
+        headers = front_headers(board)
+        assert shown == {(part.ref, pin): net for part in headers for pin, net in part.nets}
+        ends = {
+            (wire.end.connector, f"{wire.number} at {wire.end.pin}")
+            for cable in design.cabling.cables
+            for wire in cable.wires
+            if wire.end.board == "flange" and wire.end.connector in {part.ref for part in headers}
+        }
+        named = {(ref, f) for ref, _, _, all_ in rows for f in all_.split(", ") if " at " in f}
+        assert named == ends
+        assert bool(ends) != ("has a triangle" in table)
+
+
+def test_the_gripper_s_own_cable_has_a_fuse_and_a_limit(written: Written) -> None:
+    step = steps(written())
+    assert "at most 0.09 mm² of copper, which at 3 A/mm² is 0.27 A, and together 0.54 A" in step
+    assert "a fuse of the gripper's own rating into the wire that starts there" in step
+    assert "40 mm longer than their way" in step
+
+
 def test_another_supply_is_named_by_its_voltage(written: Written) -> None:
-    step = words(mounting(written({"supply.voltage_v": 12.0})))
+    step = steps(written({"supply.voltage_v": 12.0}))
     assert "Its 12 V are on J3.7 and J3.8" in step and "24 V" not in step
 
 
@@ -53,12 +89,12 @@ CLOSED = {
 
 
 def test_a_supply_behind_the_fuse_is_not_offered(written: Written) -> None:
-    step = words(mounting(written(BEHIND)))
+    step = steps(written(BEHIND))
     assert "do not feed the gripper from it" in step and "before the fuse" not in step
 
 
 def test_a_flange_without_lines_names_none(written: Written) -> None:
-    step = words(mounting(written(CLOSED)))
+    step = steps(written(CLOSED))
     assert "The robot's lines" not in step and "Its 24 V are on J3.7" in step
 
 
@@ -74,14 +110,14 @@ def test_a_socket_is_pressed_where_a_cable_is_plugged_in(
     written: Written, changes: dict[str, Any], preset: str, sockets: int
 ) -> None:
     design = written(changes, preset)
-    step, note = words(mounting(design)), wiring_note(design)
+    step, note = steps(design), wiring_note(design)
     assert step.count("Press the socket") == step.count("plug the socket") == sockets
     assert step.count("a small vice") == sockets
     assert words(note).count("press the cover down") == sockets
 
 
 def test_without_a_flange_nothing_is_said_of_it(written: Written) -> None:
-    step = mounting(written({"flange.enabled": False}))
+    step = steps(written({"flange.enabled": False}))
     assert not re.search(r"flange|J3|the glue|soldering iron", step)
 
 
@@ -101,14 +137,14 @@ def test_points_of_the_wiring_note_stand_apart(written: Written, preset: str) ->
 
 def test_the_gripper_moves_alone_before_the_fingers_are_on(written: Written) -> None:
     for preset in ("published", "integrated", "flex"):
-        step = words(mounting(written({}, preset)))
+        step = steps(written({}, preset))
         assert step.index("activate the gripper") < step.index("screw each finger on")
-        if "Plug the socket" in step:
-            assert step.index("Plug the socket") < step.index("activate the gripper")
+        if "plug the socket" in step:
+            assert step.index("plug the socket") < step.index("activate the gripper")
 
 
 def test_the_flange_is_measured_where_it_can_be_reached(written: Written) -> None:
-    step = words(mounting(written({}, "flex")))
+    step = steps(written({}, "flex"))
     board = next(b for b in written({}, "flex").auxiliary_boards if b.name == "flange")
     found = re.search(r"in the contacts of (J\d+): 5 V from \1\.(\d+) to \1\.(\d+)\.", step)
     assert found
@@ -120,7 +156,7 @@ def test_a_bench_supply_is_needed_where_a_light_shows_it(written: Written) -> No
     design = written({}, "dense")
     bare = replace(design, electrical=replace(design.electrical, indicators=()))
     lit = [bool(d.electrical.indicators) for d in (design, bare)]
-    assert [("a bench supply" in mounting(d)) for d in (design, bare)] == lit
+    assert [("a bench supply" in steps(d)) for d in (design, bare)] == lit
 
 
 @pytest.mark.parametrize("preset", ["published", "integrated"])

@@ -15,6 +15,7 @@ from lumitip_fab.docs.casting import (
     silicone_mix,
     volume_ml,
 )
+from lumitip_fab.docs.flange import flange_step
 from lumitip_fab.docs.front import WARM_UP_MIN, front
 from lumitip_fab.docs.mounting import mounting
 from lumitip_fab.docs.orders import amount, money
@@ -50,6 +51,7 @@ def manual_text(design: Design, files: Files) -> str:
             for step in casting_steps(design, design.fingers, _amounts(design, files))
         ),
         *_masked(design, files),
+        *(flange_step(design, flange) for flange in design.flanges),
         mounting(design),
         _run(design),
         _kept(design.mask),

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import trimesh
 
-from lumitip_fab.design import Box, Design, Finger, Insert, Mould, Point, frames
+from lumitip_fab.design import Box, Design, Finger, Flange, Insert, Mould, Point, frames
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.pipeline.artefact import Artefact, Files
 from lumitip_fab.scenes.bench_views import WiredBoard, drop_view, facing_view
@@ -15,6 +15,7 @@ from lumitip_fab.scenes.casting_parts import nuts_of, screws_of, wires_of
 from lumitip_fab.scenes.casting_views import filled_view, lifted_view, lowered_view
 from lumitip_fab.scenes.clamped_view import clamped_view
 from lumitip_fab.scenes.finger_views import board_view, cable_view, folded_view
+from lumitip_fab.scenes.flange_view import flange_view
 from lumitip_fab.scenes.glb import Group
 from lumitip_fab.scenes.mould_view import mould_view
 from lumitip_fab.scenes.plate_view import plate_view
@@ -47,6 +48,7 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
         "clamped": clamped_view(cast, clamp, _clamp(design, files), nuts_of(design.clamps)),
         "lifted": lifted_view(cast),
     }
+    drawings |= {flange.name: _flange(design, flange, files) for flange in design.flanges}
     for name, seen in layers.items():
         flaps = files.facts(f"mask/{name}_mask.svg")["flaps"]
         drawings[f"{name}_folded"] = folded_view(seen, flaps, _lip_y(design))
@@ -54,6 +56,22 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
         Artefact(f"manual/{name}.svg", drawing.encode(), frame="")
         for name, drawing in drawings.items()
     )
+
+
+def _flange(design: Design, flange: Flange, files: Files) -> str:
+    """The flange's parts as they were written."""
+    printed = {
+        part: stl_mesh(files, f"flange/{flange.name}_{part}.stl")
+        for part in frames.flange_beds(flange)
+    }
+    (auxiliary,) = (b for b in design.auxiliary_boards if b.name == flange.auxiliary)
+    plugged = {
+        wire.end.connector: cable.name
+        for cable in design.cabling.cables
+        for wire in cable.wires
+        if wire.end.board == flange.auxiliary
+    }
+    return flange_view(flange, printed, auxiliary, design.stack, design.system, plugged)
 
 
 def _lip_y(design: Design) -> float | None:

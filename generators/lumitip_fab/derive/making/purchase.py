@@ -160,7 +160,7 @@ def _of_flange(config: Input, flange: Flange, packs: Mapping[str, Pack]) -> list
         (screw, "ISO 7046", where, count, f"{flange.screw} screw"),
         (nut, "ISO 4032", where, count, nut),
         (pin, "ISO 2338", "flange to coupling, glued in", 1, "parallel pin"),
-        (f"{bolt}, length by step Mount", "ISO 4762", longer, len(flange.bolts), bolt),
+        (f"{bolt}, length by step Flange", "ISO 4762", longer, len(flange.bolts), bolt),
     )
     return [_fastener(*row, packs) for row in rows]
 

@@ -1,0 +1,174 @@
+"""The manual's step of the flange: its board, its printed parts, its bolts, the gripper's cable."""
+
+from collections.abc import Iterator
+
+from lumitip_fab.design import AuxiliaryBoard, Design, Flange
+from lumitip_fab.design.cabling import INPUT_END, front_headers, gripper_headers, plugged_headers
+from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
+from lumitip_fab.docs.wiring import SLOT_MM2, listed
+from lumitip_fab.text import as_written, passage
+
+OWN_MM = (12, 16, 20, 25)
+"""Lengths of a gripper's own bolts, as examples."""
+FLANGE_MIN = 60
+"""How long the work takes (assumed)."""
+
+
+def flange_step(design: Design, flange: Flange) -> str:
+    """The step, its work numbered."""
+    work = "\n".join(f"{n}. {text}" for n, text in enumerate(_work(design, flange), 1))
+    return _text(
+        "flange_step",
+        flange=flange,
+        needs=", ".join(_needs(design)),
+        minutes=FLANGE_MIN,
+        work=work,
+        contacts=_contacts(design),
+        lengths=_lengths(flange),
+    )
+
+
+def _needs(design: Design) -> Iterator[str]:
+    """Tools, and what is used up."""
+    yield "the keys and screwdrivers, a soldering iron, solder, side cutters, safety glasses"
+    yield f"a multimeter, {design.strength.glue}, nitrile gloves"
+    if design.electrical.indicators:
+        yield "a bench supply"
+    if plugs(design):
+        yield "a small vice"
+
+
+def _work(design: Design, flange: Flange) -> Iterator[str]:
+    """From the cable that is pressed on the bench to the supply that is measured."""
+    yield _chosen(design)
+    own = gripper_headers(design.auxiliary_boards)
+    for header, cable in plugs(design):
+        shared = _text("shared", header=header) if header in own else ""
+        yield _text("socketed", cable=cable, header=header, shared=shared)
+    yield _text("switched_off")
+    yield _text("taken_off")
+    yield _text("confirmed", volts=_volts(_raw(design)))
+    yield _text("contacts", flange=flange)
+    for lit in design.electrical.indicators:
+        output = f"{lit.output_v:g}V"
+        raw = _raw(design)
+        yield _text("indicator", lit=lit, supply=_volts(raw), raw=raw, output=output)
+    hard_h = design.mould.glue_hard_h
+    wait = f"for {hard_h:g} h" if hard_h else "for as long as its label says"
+    yield _text("closed", flange=flange, glue=design.strength.glue, wait=wait)
+    yield _text("bolted", flange=flange, bolts=len(flange.bolts))
+    yield from _powered(design)
+
+
+def _powered(design: Design) -> Iterator[str]:
+    """Where the flange's supply is measured once the gripper hides its board."""
+    for lit in design.electrical.indicators:
+        output = f"{lit.output_v:g}V"
+        for part in front_headers(_flange(design)):
+            plus, minus = (
+                [f"{part.ref}.{number}" for number, net in part.nets if net == wanted]
+                for wanted in (output, "GND")
+            )
+            if plus and minus:
+                volts = f"{lit.output_v:g} V"
+                header = part.ref
+                yield _text("powered", header=header, volts=volts, plus=plus[0], minus=minus[-1])
+                return
+
+
+def _chosen(design: Design) -> str:
+    """The gripper's cable, and where its supply and lines are on the flange's board."""
+    board = _flange(design)
+    headers = front_headers(board)
+    raw = _raw(design)
+    pads = [f"{part.ref}.{number}" for part in headers for number, net in part.nets if net == raw]
+    supply = _from_robot(design, pads) if pads else ""
+    own = [part.ref for part in headers if {net for _, net in part.nets} - {*board.supplies}]
+    lines = _text("lines", lines=listed(own)) if own else ""
+    return _text("chosen", supply=supply or _text("behind_fuse"), lines=lines)
+
+
+def _from_robot(design: Design, pads: list[str]) -> str:
+    """The supply before the fuse, and how much its contacts carry."""
+    density, each = design.cabling.most_a_per_mm2, SLOT_MM2
+    return _text(
+        "from_robot",
+        pads=listed(pads),
+        volts=_volts(_raw(design)),
+        slot_mm2=each,
+        density=density,
+        each_a=each * density,
+        all_a=len(pads) * each * density,
+        slack_mm=design.cabling.slack_mm,
+    )
+
+
+def _contacts(design: Design) -> str:
+    """What each contact of a socket on the flange's headers carries, and its wire."""
+    counted = "" if plugs(design) else _text("counted")
+    return _text("sockets", counted=counted, rows="\n".join(_contact_rows(design)))
+
+
+def _contact_rows(design: Design) -> Iterator[str]:
+    board = _flange(design)
+    wires = [wire for cable in design.cabling.cables for wire in cable.wires]
+    ends = {(w.end.connector, w.end.pin): w.number for w in wires if w.end.board == board.name}
+    for part in front_headers(board):
+        nets = dict.fromkeys(net for _, net in part.nets)
+        for net in nets:
+            pins = [pin for pin, carried in part.nets if carried == net]
+            found = [f"{ends[part.ref, p]} at {p}" for p in pins if (part.ref, p) in ends]
+            if net == "GND" or net.endswith(INPUT_END) or net not in board.supplies:
+                found.append("the gripper's")
+            yield f"| {part.ref} | {', '.join(pins)} | {as_written(net)} | {', '.join(found)} |"
+
+
+def _raw(design: Design) -> str:
+    """Net of the contacts' supply before the fuse, such as `"24V_IN"`."""
+    return next(name for name in _probed(design) if name.endswith(INPUT_END))
+
+
+def _volts(raw: str) -> str:
+    """Voltage of the contacts' supply, such as `"24 V"`."""
+    return raw.removesuffix(INPUT_END).replace("V", " V")
+
+
+def _flange(design: Design) -> AuxiliaryBoard:
+    """The flange's board."""
+    return next(board for board in design.auxiliary_boards if board.name == "flange")
+
+
+def _probed(design: Design) -> list[str]:
+    """Nets of the test points on the flange's board."""
+    return [part.value for part in _flange(design).components if part.kind == "test point"]
+
+
+def _lengths(flange: Flange) -> str:
+    """The rule for the flange bolts, with examples."""
+    rows = []
+    for own_mm in OWN_MM:
+        least_mm = own_mm + flange.top_z_mm
+        if least_mm <= BOLTS_MM[-1]:
+            length_mm = standard_bolt_mm(least_mm)
+            rows.append(
+                f"| {own_mm} mm | {least_mm:.1f} mm | {flange.bolt} x {length_mm} "
+                f"| {length_mm - least_mm:+.1f} mm |"
+            )
+    return _text("lengths", flange=flange, less_mm=SHORTER_MM, rows="\n".join(rows))
+
+
+def plugs(design: Design) -> list[tuple[str, str]]:
+    """Headers of the flange that a cable is plugged into, and the name of that cable."""
+    headers = plugged_headers(design.cabling.cables, design.auxiliary_boards)
+    found = {
+        (wire.end.connector, cable.name)
+        for cable in design.cabling.cables
+        for wire in cable.wires
+        if wire.end.board == "flange"
+    }
+    return sorted(plug for plug in found if plug[0] in headers)
+
+
+def _text(name: str, /, **values: object) -> str:
+    """A passage of the manual with its values."""
+    return passage("docs/chapters.md", name).format(**values)
