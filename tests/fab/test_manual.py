@@ -11,6 +11,7 @@ import pytest
 
 from damages import edit, excerpt
 from lumitip_fab.design.encoding import read_design
+from lumitip_fab.docs.casting import casting_steps
 from lumitip_fab.docs.mounting import mounting
 from manual_figures import measure, read_pdf
 
@@ -192,6 +193,28 @@ def test_what_cuts_and_what_looks_closer_is_among_the_tools(copied: Path) -> Non
 def plain(folder: Path) -> str:
     text = (folder / HTML).read_text(encoding="utf-8")
     return " ".join(re.sub(r"<style>.*?</style>|<[^>]*>", " ", text, flags=re.DOTALL).split())
+
+
+def test_heat_and_spare_parts_are_named_where_boards_are_made(copied: Path) -> None:
+    design = read_design(copied / "design.json")
+    solder, boards = design.heat_steps["solder"], " ".join(chapter(copied, "Boards").split())
+    joint, limit = f"{solder.temperature_c:g} °C", f"{solder.limit_c:g} °C"
+    assert f"Joints reach {joint}, and the board of FR-4 bears {limit}" in boards
+    cells = sum(part.kind == "led" for part in design.emitter.parts)
+    assert f"({cells} LEDs, {cells} photodetectors) all go onto the boards" in boards
+
+
+def test_how_long_the_silicone_is_worked_and_how_a_skin_comes_off(copied: Path) -> None:
+    design = read_design(copied / "design.json")
+    filled = " ".join(chapter(copied, "Fill the mould").split())
+    assert f"worked for some {design.mould.pot_life_min:g} min" in filled
+    unknown = replace(design, mould=replace(design.mould, pot_life_min=0.0))
+    (step,) = (s for s in casting_steps(unknown, unknown.fingers) if s.title == "Fill the mould")
+    assert "is in its data sheet" in step.text and " 0 min" not in step.text
+    skin = " ".join(chapter(copied, "What wears").split())
+    assert f"Push the {len(design.keys)} plugs of silicone" in skin
+    flange = " ".join(chapter(copied, "Flange").split())
+    assert f"Let the glue harden for {design.mould.glue_hard_h:g} h" in flange
 
 
 @pytest.mark.parametrize(

@@ -74,6 +74,27 @@ def test_the_gripper_s_own_cable_has_a_fuse_and_a_limit(written: Written) -> Non
     assert "40 mm longer than their way" in step
 
 
+@pytest.mark.parametrize("preset", ["published", "flex", "integrated", "wsg50"])
+def test_the_way_of_each_cable_has_all_its_ties(written: Written, preset: str) -> None:
+    design = written({}, preset)
+    table = mounting(design).split("### Ways of the cables")[1]
+    rows = re.findall(r"^\| (W\d): .*? \| (.*?) \| (.*?) \| (.*?) \|$", table, re.MULTILINE)
+    assert [row[0] for row in rows] == [cable.name for cable in design.cabling.cables]
+    places = [place for _, start, _, end in rows for place in f"{start}, {end}".split(", ")]
+    boards = [*design.fingers, *design.auxiliary_boards]
+    wires = [wire for cable in design.cabling.cables for wire in cable.wires]
+    ends = {(end.board, end.connector) for wire in wires for end in (wire.start, wire.end)}
+    ties_at = [tie.ref for board in boards for tie in board.ties if (board.name, tie.ref) in ends]
+    threads = [f"thread beside {ref}" for ref in ties_at]
+    assert sorted(p for p in places if p.startswith("thread")) == sorted(threads)
+    lugs = [f"tie at the holder's lug {lug.name}" for h in design.holders for lug in h.lugs]
+    assert sorted(p for p in places if "holder" in p) == sorted(lugs)
+    ties = next(p.quantity for p in design.purchase.pieces if p.item.startswith("cable tie"))
+    assert sum(place.startswith("tie") for place in places) <= ties
+    free = {loop.cable: f"{loop.length_mm:.0f} mm" for loop in design.cabling.loops}
+    assert {name: way for name, _, way, _ in rows if "mm" in way} == free
+
+
 def test_another_supply_is_named_by_its_voltage(written: Written) -> None:
     step = steps(written({"supply.voltage_v": 12.0}))
     assert "Its 12 V are on J3.7 and J3.8" in step and "24 V" not in step

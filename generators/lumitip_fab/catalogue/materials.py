@@ -136,6 +136,9 @@ class Silicone(Entry):
     """Highest temperature that it withstands when cured (°C)."""
     inhibited_by: tuple[Substance, ...]
     """Substances that keep it from curing where it touches them."""
+    pot_life_min: float | None = Field(default=None, ge=1, le=2000)
+    """Time for which it can be worked once it is mixed, at room temperature (min); none where it is
+    not known."""
     needs_primer: bool
     """Whether it holds on printed plastics and boards by a primer alone."""
 

@@ -38,6 +38,12 @@ def outer_mm(section_mm2: float) -> float:
     return STRANDED * math.sqrt(4 * section_mm2 / math.pi) + 2 * wall
 
 
+def awg(section_mm2: float) -> int:
+    """The even gauge nearest to a section, by ASTM B258: the trade's equivalent."""
+    diameter_mm = math.sqrt(4 * section_mm2 / math.pi)
+    return 2 * round((36 - 39 * math.log(diameter_mm / 0.127, 92)) / 2)
+
+
 def codes_of(colour: str) -> tuple[str, ...]:
     """The codes in a colour such as `"GN"` or, striped, `"WHGN"`: ground first."""
     return tuple(colour[i : i + 2] for i in range(0, len(colour), 2))

@@ -64,6 +64,8 @@ class Mould:
     silicone: str
     density_g_ml: float
     mix_ratio: Point
+    pot_life_min: float
+    """Time for which the mixed silicone can be worked; 0 where it is not known."""
     cure_h: float
     cure_c: float
     """Temperature to cure at (°C)."""

@@ -3,11 +3,11 @@ prices; and `order.csv`, what must be bought for it."""
 
 import csv
 import io
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 
 from lumitip_fab.design import Bought, Design, Purchase
+from lumitip_fab.design.cabling import awg
 from lumitip_fab.design.making import Filament
 from lumitip_fab.design.mould import printed_times
 from lumitip_fab.design.print_time import print_seconds
@@ -97,7 +97,7 @@ def materials(design: Design, files: Files) -> Iterator[Bought]:
         colours.setdefault(cable.section_mm2, set()).update(wire.colour for wire in cable.wires)
     for section, length in sorted(metres.items()):
         where = f"{len(colours[section])} colours: wiring/cables.csv has their lengths"
-        item = f"stranded wire, {section:g} mm² (AWG {_awg(section)})"
+        item = f"stranded wire, {section:g} mm² (AWG {awg(section)})"
         used = round(length, 2)
         yield _packed(purchase, "wiring", "stranded wire", item, where, used, "m")
 
@@ -106,12 +106,6 @@ def _minutes(facts: Mapping[str, float], filament: Filament, design: Design) -> 
     """Time to print a part, to whole minutes."""
     brim = filament != design.slicing.sheet
     return round(print_seconds(facts, filament, design.printing, brim) / 60)
-
-
-def _awg(section_mm2: float) -> int:
-    """The even gauge nearest to a section, by ASTM B258: the trade's equivalent."""
-    diameter_mm = math.sqrt(4 * section_mm2 / math.pi)
-    return 2 * round((36 - 39 * math.log(diameter_mm / 0.127, 92)) / 2)
 
 
 def _packed(

@@ -223,7 +223,9 @@ def _trial(mould: Mould) -> str:
 
 
 def _filled(design: Design) -> str:
-    work = [_text("weighed"), _text("wetted")]
+    pot_life_min = design.mould.pot_life_min
+    pot = _text("pot_known" if pot_life_min else "pot_unknown", pot_life_min=pot_life_min)
+    work = [_text("weighed", pot=pot), _text("wetted")]
     work += [_text("laid") for _ in design.mould.inserts]
     props = design.mould.props
     work += [_text("levelled") for _ in props[:1]]

@@ -1,12 +1,14 @@
 """The manual: its own chapters and the notes of the parts, as Markdown, HTML and PDF."""
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import count
 from typing import Any
 
-from lumitip_fab.design import Design, Mask, Packages
+from lumitip_fab.design import Design, Finger, Packages
+from lumitip_fab.design.cabling import awg
 from lumitip_fab.docs.bring_up import first_test
 from lumitip_fab.docs.casting import (
     amounts_of_both,
@@ -30,6 +32,8 @@ from lumitip_fab.text import as_written, passage
 
 RUN_MIN, ACCEPT_MIN = 15, 10
 """How long calibration takes, and the test with the gauge card (assumed)."""
+SPARE = 2
+"""Parts of each kind whose polarity is tested, beyond those on the boards."""
 WEAR_GRASPS = 100
 """After about so many grasps the published sensor's silicone had worn above the LEDs."""
 _PROBE_V = 0.15  # less than at the working current: a diode test drives about 1 mA
@@ -54,7 +58,7 @@ def manual_text(design: Design, files: Files) -> str:
         *(flange_step(design, flange) for flange in design.flanges),
         mounting(design),
         _run(design),
-        _kept(design.mask),
+        _kept(design),
     )
     numbers = count(1)
     joined = _joined(chapter.strip() for chapter in chapters) + "\n"
@@ -114,8 +118,11 @@ def _boards(design: Design, files: Files) -> str:
         "boards",
         zips="\n".join(f"- `boards/{name}/order/`: {name}" for name in names),
         panels=_panels(design),
+        solder=design.heat_steps["solder"],
+        reflowed=(reflowed := _reflowed(design)),
+        hot_air=", hot air, flux" * bool(reflowed),
         breaking=", pliers, small files, safety glasses" * bool(design.panels),
-        polarity=polarity_test(design.packages),
+        polarity=polarity_test(design.packages, design.fingers),
         protection=protection_note(design),
         last=", then the string resistors on the back of the emitter" if behind else "",
         pictures="\n".join(pictures),
@@ -133,7 +140,13 @@ def _panels(design: Design) -> str:
     return _text("panels", listed=listed, board=design.board)
 
 
-def polarity_test(packages: Packages) -> str:
+def _reflowed(design: Design) -> str:
+    """How a part is soldered whose pads an iron does not reach: a module's."""
+    components = (part for board in design.auxiliary_boards for part in board.components)
+    return "".join(_text("reflowed", part=part) for part in components if part.kind == "module")
+
+
+def polarity_test(packages: Packages, fingers: tuple[Finger, ...]) -> str:
     """The test with a multimeter of parts whose marked terminal is not known; empty where the
     polarity of both kinds of part is known."""
     led, detector = packages.led, packages.photodetector
@@ -145,13 +158,19 @@ def polarity_test(packages: Packages) -> str:
     if not detector.mark_is_known:
         name = as_written(packages.photodetector_name)
         tests.append(_text("photodetector", part=detector, name=name))
-    return _text("polarity", tests="".join(tests)) if tests else ""
+    parts = Counter(part.kind for finger in fingers for part in finger.parts)
+    counted = f"{parts['led']} LEDs, {parts['photodetector']} photodetectors"
+    tests_text = "".join(tests)
+    return _text("polarity", tests=tests_text, counted=counted, spare=SPARE) if tests else ""
 
 
 def _wired(design: Design, files: Files) -> str:
+    sections = sorted({cable.section_mm2 for cable in design.cabling.cables})
+    wires = [f"stranded wire of {mm2:g} mm² (AWG {awg(mm2)})" for mm2 in sections]
     weak = f"{pins}.\n\n" if (pins := pulled_up(design.wiring)) else ""
     return _text(
         "wired",
+        wires=listed(wires),
         ties=", cable ties" if design.mount.lugs or design.holders else "",
         note=_included(files.text("wiring/cables.md")),
         weak=weak,
@@ -212,9 +231,17 @@ def _run(design: Design) -> str:
     )
 
 
-def _kept(mask: Mask) -> str:
-    worn = "its black is rubbed off" if mask.route == "film" else "it is torn or has come loose"
-    return _text("kept", grasps=WEAR_GRASPS, worn=worn)
+def _kept(design: Design) -> str:
+    """What wears, and how a worn skin comes off."""
+    film = design.mask.route == "film"
+    keys = len(design.keys)
+    return _text(
+        "kept",
+        grasps=WEAR_GRASPS,
+        worn="its black is rubbed off" if film else "it is torn or has come loose",
+        lip=", and along the lip on the back of the tip" if design.props else "",
+        plugs=_text("skin_plugs", keys=keys) + " " if keys else "",
+    )
 
 
 def _included(note: str) -> str:

@@ -45,9 +45,11 @@ def _words(design: Design) -> Iterator[str]:
 
 
 def _board_tools(design: Design) -> str:
-    """For panels, a socket on wires, a board that is tied on, and a smooth film."""
+    """For a module, panels, a socket on wires, a board that is tied on, and a smooth film."""
     plugs = plugged_headers(design.cabling.cables, design.auxiliary_boards)
-    tools = ["pliers"] * bool(design.panels)
+    components = (part for board in design.auxiliary_boards for part in board.components)
+    tools = ["hot air to solder with"] * any(part.kind == "module" for part in components)
+    tools += ["pliers"] * bool(design.panels)
     tools += ["a small vice"] * bool(plugs) + ["a needle"] * bool(design.interfaces)
     tools += ["a cutting mat, a plastic card"] * bool(design.mould.inserts)
     return "".join(f", {tool}" for tool in tools)

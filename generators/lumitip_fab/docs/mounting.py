@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from lumitip_fab.design import Design
+from lumitip_fab.docs.cable_ways import cable_ways
 from lumitip_fab.docs.flange import plugs
 from lumitip_fab.text import passage
 
@@ -15,6 +16,7 @@ def mounting(design: Design) -> str:
         work=work,
         needs=", ".join(_needs(design)),
         minutes=_minutes(design),
+        ways=cable_ways(design),
         signs=_text("flange_sign") if design.flanges else "",
     )
 

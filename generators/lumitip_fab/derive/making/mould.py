@@ -94,6 +94,7 @@ def derive_mould(
         silicone=config.title("mould.silicone"),
         density_g_ml=silicone.density_g_ml,
         mix_ratio=silicone.mix_ratio,
+        pot_life_min=silicone.pot_life_min or 0.0,
         cure_h=silicone.cure_h,
         cure_c=silicone.cure_c,
         waste_fraction=p.mould.waste_fraction,

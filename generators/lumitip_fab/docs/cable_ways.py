@@ -1,0 +1,47 @@
+"""The way of each cable: what holds it at both ends, and how much of it stays free."""
+
+from collections.abc import Iterator
+
+from lumitip_fab.design import Cable, Design
+from lumitip_fab.design.cabling import Terminal
+from lumitip_fab.text import passage
+
+
+def cable_ways(design: Design) -> str:
+    """The table of all cables, for the step in which they are tied."""
+    loops = {loop.cable: f"{loop.length_mm:.0f} mm" for loop in design.cabling.loops}
+    rows = [
+        f"| {cable.name}: {cable.start.board} to {cable.end.board} "
+        f"| {', '.join(_held(design, cable, cable.start)) or 'nothing'} "
+        f"| {loops.get(cable.name, 'none of it')} "
+        f"| {', '.join(_held(design, cable, cable.end)) or 'nothing'} |"
+        for cable in design.cabling.cables
+    ]
+    return passage("docs/chapters.md", "ways").format(rows="\n".join(rows))
+
+
+def _held(design: Design, cable: Cable, end: Terminal) -> Iterator[str]:
+    """What holds an end, from its pads on."""
+    ties = {f.name: f.ties for f in design.fingers}
+    ties |= {board.name: board.ties for board in design.auxiliary_boards}
+    for tie in ties.get(end.board, ()):
+        if tie.ref == end.connector:
+            yield f"thread beside {end.connector}"
+    fingers = {finger.name for finger in design.fingers}
+    if end.board in fingers and design.mount.lugs:
+        yield "tie at the block's lug"
+    elif end.board in fingers and not ties[end.board]:
+        yield "tie round the gripper"
+    for holder in design.holders:
+        named = [lug.name for lug in holder.lugs if holder.auxiliary == end.board]
+        yield from (f"tie at the holder's lug {name}" for name in named if name == end.connector)
+    if end.board == "supply":
+        yield "its terminals"
+    elif end.connector in _headers(design, cable):
+        yield f"socket at {end.connector}"
+
+
+def _headers(design: Design, cable: Cable) -> set[str]:
+    """Headers at the end of a cable that it is plugged into."""
+    boards = (board for board in design.auxiliary_boards if board.name == cable.end.board)
+    return {part.ref for board in boards for part in board.components if part.kind == "header"}
