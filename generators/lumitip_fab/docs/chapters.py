@@ -116,7 +116,7 @@ def _boards(design: Design, files: Files) -> str:
     ]
     return _text(
         "boards",
-        zips="\n".join(f"- `boards/{name}/order/`: {name}" for name in names),
+        names=listed(list(names)),
         panels=_panels(design),
         solder=design.heat_steps["solder"],
         reflowed=(reflowed := _reflowed(design)),

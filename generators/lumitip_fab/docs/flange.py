@@ -120,7 +120,8 @@ def _contact_rows(design: Design) -> Iterator[str]:
             found = [f"{ends[part.ref, p]} at {p}" for p in pins if (part.ref, p) in ends]
             if net == "GND" or net.endswith(INPUT_END) or net not in board.supplies:
                 found.append("the gripper's")
-            yield f"| {part.ref} | {', '.join(pins)} | {as_written(net)} | {', '.join(found)} |"
+            shown = ", ".join(found) or "none"
+            yield f"| {part.ref} | {', '.join(pins)} | {as_written(net)} | {shown} |"
 
 
 def _raw(design: Design) -> str:
