@@ -47,6 +47,7 @@ order = "auto"
 diode = "auto"
 [breakout]
 board_mm = [45.72, 38.1]
+indicator = "auto"
 """
 DEFAULT = "fingertip"
 
@@ -54,7 +55,7 @@ DEFAULT = "fingertip"
 @pytest.fixture(scope="session")
 def designs(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Design]:
     """`designs("dense")`: a preset's design; `"fingertip"` is the default's, `"small"` a grid of 13
-    cells on two muxes, `"switched"` the same with a transistor that switches the LEDs, a power LED
+    cells on two muxes, `"switched"` the same with a transistor that switches the LEDs, power LEDs
     and protected pins, `"panelled"` with panels."""
     folder = tmp_path_factory.mktemp("designs") / "design"
     shutil.copytree(design_dir, folder)

@@ -1,4 +1,4 @@
-"""The power LED of the flange's board: what is refused, and what its checks find damaged."""
+"""The power LEDs of flange and breakout: what is refused, and what its checks find damaged."""
 
 import re
 import shutil
@@ -18,42 +18,42 @@ from lumitip_fab.errors import InputError
 
 pytestmark = pytest.mark.slow
 
-FLANGE = "boards/flange/flange.kicad_pcb"
-Damage = Callable[[str], str]
+FLANGE, BREAKOUT = (f"boards/{name}/{name}.kicad_pcb" for name in ("flange", "breakout"))
+Damage = Callable[[str, str, str], str]
+LIT = {"flange": ("D2", "R4", "1K1", "4K7"), "breakout": ("LED1", "R7", "390R", "1K8")}
+"""LED and resistor of each board, its value, and one with which the LED is dark."""
+each_board = pytest.mark.parametrize("name", LIT)
 
 
 @pytest.fixture
 def folder(boards: Callable[[str], Path], tmp_path: Path) -> Path:
-    """Boards of a design with a power LED, to damage."""
+    """Boards of a design with power LEDs, to damage."""
     return Path(shutil.copytree(boards("switched"), tmp_path / "lit"))
 
 
-def led_reversed(text: str) -> str:
-    return swapped_pads(text, "D2", "1", "2")
+def led_reversed(text: str, led: str, _: str) -> str:
+    return swapped_pads(text, led, "1", "2")
 
 
-def resistor_small(text: str) -> str:
-    return in_part(text, "R4", r'value "1K1"', 'value "120R"')
+def resistor_small(text: str, _: str, resistor: str) -> str:
+    return in_part(text, resistor, r'value "[^"]+"', 'value "20R"')
 
 
-def resistor_large(text: str) -> str:
-    return in_part(text, "R4", r'value "1K1"', 'value "4K7"')
+def resistor_without_a_value(text: str, _: str, resistor: str) -> str:
+    return in_part(text, resistor, r'value "[^"]+"', 'value "some"')
 
 
-def resistor_without_a_value(text: str) -> str:
-    return in_part(text, "R4", r'value "1K1"', 'value "some"')
+def led_behind(text: str, led: str, _: str) -> str:
+    """On the board's back, its pads in their places."""
+    return in_part(text, led, r'\(layer "F.Cu"\)', '(layer "B.Cu")')
 
 
-def led_behind(text: str) -> str:
-    """On the side of the contacts, its pads in their places."""
-    return in_part(text, "D2", r'\(layer "F.Cu"\)', '(layer "B.Cu")')
-
-
-def led_bridged(text: str) -> str:
-    """A track from the output to the LED: no resistor before it."""
-    at = text.index('(fp_text reference "R4"')
-    place = re.search(r"\(at (\S+) (\S+?)[ )]", text[text.rindex("\n  (footprint", 0, at) :])
-    net = re.search(r'\(net (\d+) "5V"\)', text)
+def led_bridged(text: str, _: str, resistor: str) -> str:
+    """A track from the supply to the LED: no resistor before it."""
+    at = text.index(f'(fp_text reference "{resistor}"')
+    part = text[text.rindex("\n  (footprint", 0, at) : at + 4000]
+    place = re.search(r"\(at (\S+) (\S+?)[ )]", part)
+    net = re.search(r'\(net (\d+) "(5V|3V3)"\)', part)
     assert place and net
     x, y = float(place[1]), float(place[2])
     track = (
@@ -67,47 +67,73 @@ def led_bridged(text: str) -> str:
 DAMAGES: dict[Damage, set[str]] = {
     led_reversed: {"indicator", "lands", "silk_marks", "joined", "apart"},
     resistor_small: {"indicator_bright", "indicator_load"},
-    resistor_large: {"indicator_dim"},
     resistor_without_a_value: {"indicator_dim", "indicator_bright", "indicator_load"},
     led_bridged: {"indicator", "short", "joined"},
 }
 
 
-def test_an_undamaged_board_passes(folder: Path) -> None:
+@each_board
+def test_an_undamaged_board_passes(folder: Path, name: str) -> None:
     design = read_design(folder / "design.json")
-    found = list(board.measure_board(folder, design, "flange"))
+    found = list(board.measure_board(folder, design, name))
     assert [m for m in found if not m.passed] == []
     lit = {m.check.removeprefix("board.") for m in found if "indicator" in m.check}
     assert lit == {"indicator", "indicator_dim", "indicator_bright", "indicator_load"}
 
 
+@each_board
 @pytest.mark.parametrize("damage", DAMAGES, ids=lambda d: d.__name__)
-def test_a_damage_of_the_power_led(damage: Damage, folder: Path) -> None:
-    before = (folder / FLANGE).read_text()
-    (folder / FLANGE).write_text(damage(before))
-    assert (folder / FLANGE).read_text() != before
-    assert failing(folder, "board", "flange") == DAMAGES[damage]
+def test_a_damage_of_the_power_led(damage: Damage, folder: Path, name: str) -> None:
+    _damage(folder, name, damage)
+    assert failing(folder, "board", name) == DAMAGES[damage]
 
 
-def test_an_led_among_the_contacts_is_seen(folder: Path) -> None:
-    (folder / FLANGE).write_text(led_behind((folder / FLANGE).read_text()))
-    assert "indicator" in failing(folder, "board", "flange")
+@each_board
+def test_an_led_that_is_too_dim_is_seen(folder: Path, name: str) -> None:
+    *_, ohm, dark = LIT[name]
+    _damage(
+        folder,
+        name,
+        lambda text, _, ref: in_part(text, ref, f'value "{ohm}"', f'value "{dark}"'),
+    )
+    assert failing(folder, "board", name) == {"indicator_dim"}
 
 
-def test_a_flange_without_it_has_no_such_checks(boards: Callable[[str], Path]) -> None:
+@each_board
+def test_an_led_on_the_back_is_seen(folder: Path, name: str) -> None:
+    _damage(folder, name, led_behind)
+    assert "indicator" in failing(folder, "board", name)
+
+
+def _damage(folder: Path, name: str, damage: Damage) -> None:
+    file = folder / {"flange": FLANGE, "breakout": BREAKOUT}[name]
+    led, resistor, *_ = LIT[name]
+    before = file.read_text()
+    file.write_text(damage(before, led, resistor))
+    assert file.read_text() != before
+
+
+@each_board
+def test_a_board_without_it_has_no_such_checks(boards: Callable[[str], Path], name: str) -> None:
     folder = boards("small")
     design = read_design(folder / "design.json")
     assert design.electrical.indicators == ()
-    names = {m.check for m in board.measure_board(folder, design, "flange")}
+    names = {m.check for m in board.measure_board(folder, design, name)}
     assert not any("indicator" in name for name in names)
 
 
 def test_currents_are_within_what_the_led_needs_and_bears(
     designs: Callable[[str], Design],
 ) -> None:
-    (lit,) = designs("switched").electrical.indicators
-    assert lit.visible_ma <= lit.low_ma < lit.high_ma <= lit.max_ma
-    assert lit.resistor_w <= lit.load * lit.rated_w
+    found = designs("switched").electrical.indicators
+    assert [(lit.board, lit.output_v) for lit in found] == [("flange", 5.0), ("breakout", 3.3)]
+    for lit in found:
+        assert lit.visible_ma <= lit.low_ma < lit.high_ma <= lit.max_ma
+        assert lit.resistor_w <= lit.load * lit.rated_w
+
+
+def test_a_module_needs_no_breakout_and_no_led_there(designs: Callable[[str], Design]) -> None:
+    assert {lit.board for lit in designs("integrated").electrical.indicators} == {"flange"}
 
 
 ENTRY = """
@@ -146,14 +172,34 @@ def test_an_led_that_the_output_does_not_suit_is_refused(
     assert any(p.field == "flange.indicator" and says in p.message for p in caught.value.problems)
 
 
-def test_an_automatic_led_that_the_output_does_not_suit_is_left_out(
+def test_the_flanges_green_led_is_too_dim_at_the_controllers_supply(
     design_dir: Path, tmp_path: Path
 ) -> None:
     folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
+    mine = folder / "mine.toml"
+    mine.write_text('extends = "fingertip.toml"\n[breakout]\nindicator = "APT2012LZGCK"\n')
+    with pytest.raises(InputError) as caught:
+        derive(load(mine))
+    (problem,) = caught.value.problems
+    assert problem.field == "breakout.indicator"
+    assert "needs 0.5 mA to be seen and up to 3.1 V; at 3.3 V" in problem.message
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "field", "left"),
+    [
+        ("[2.4, 3.1]", "[2.4, 4.7]", "flange.indicator", "breakout"),
+        ("[1.8, 2.4]", "[2.2, 3.1]", "breakout.indicator", "flange"),
+    ],
+)
+def test_an_automatic_led_that_the_supply_does_not_suit_is_left_out(
+    design_dir: Path, tmp_path: Path, old: str, new: str, field: str, left: str
+) -> None:
+    folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
     table = folder / "parts/indicators.toml"
-    table.write_text(table.read_text().replace("[2.4, 3.1]", "[2.4, 4.7]"))
+    table.write_text(table.read_text().replace(old, new))
     design = derive(load(folder / "fingertip.toml"))
-    choice = next(c for c in design.choices if c.field == "flange.indicator")
+    choice = next(c for c in design.choices if c.field == field)
     assert choice.value == "'none'"
     assert "to be seen" in choice.reason
-    assert design.electrical.indicators == ()
+    assert [lit.board for lit in design.electrical.indicators] == [left]

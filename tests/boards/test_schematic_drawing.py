@@ -35,6 +35,8 @@ current_ma = 12.0
 [flange]
 tvs = "SMBJ5.0A"
 indicator = "auto"
+[breakout]
+indicator = "auto"
 """
 BOARDS = (
     *(("published", name) for name in ("flange", "breakout", "emitter", "receiver")),

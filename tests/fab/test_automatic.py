@@ -70,7 +70,12 @@ def test_the_published_grid_keeps_the_published_values(inputs: dict[str, Input])
     moved = {f for f, a in automatic_fields().items() if published.value(f) != a.start}
     pull_ups = {"receiver.load", "receiver.pull_up_ohm"}
     added = {"emitter.drive", "emitter.switch", "flange.indicator", "receiver.bulk_capacitor"}
-    added |= {"protection.diode", "backing.flare_mm", "backing.flare_depth_mm"}
+    added |= {
+        "breakout.indicator",
+        "protection.diode",
+        "backing.flare_mm",
+        "backing.flare_depth_mm",
+    }
     apart = {"wiring.order"}
     assert moved == pull_ups | added | apart, "new designs have more parts and a flare"
 
@@ -79,7 +84,7 @@ def test_every_choice_has_a_value_and_a_reason_in_one_line(file: Any) -> None:
     design = derive(load(file("[grid]\npitch_mm = 3.5\n[mask]\nhole_mm = 1.4\n")))
     choices = {choice.field: choice for choice in design.choices}
     stated = {"receiver.load", "emitter.drive", "emitter.switch", "flange.indicator"}
-    stated |= {"receiver.bulk_capacitor", "wiring.order", "protection.diode"}
+    stated |= {"breakout.indicator", "receiver.bulk_capacitor", "wiring.order", "protection.diode"}
     assert set(choices) == set(automatic_fields()) - stated, "published.toml states these"
     assert choices["receiver.photodetector"].value == "'PT19-21C'"
     assert "needs a pitch of at least 3.70 mm" in choices["receiver.photodetector"].reason

@@ -103,6 +103,7 @@ def test_the_file_to_edit_is_the_published_sensor_with_pull_ups_and_current_sour
         ("emitter", "drive"): ("source", "resistor"),
         ("emitter", "switch"): ("AO3400A", "none"),
         ("flange", "indicator"): ("APT2012LZGCK", "none"),
+        ("breakout", "indicator"): ("KT-0805YG", "none"),
         ("wiring", "order"): ("apart", "published"),
         ("protection", "diode"): ("H5VUD5U", "none"),
         ("breakout", "board_mm"): ((45.72, 38.1), (45.72, 33.02)),

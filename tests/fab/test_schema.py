@@ -76,10 +76,16 @@ def test_every_field_has_the_published_value_as_its_default(
     schema: dict[str, Any], published: dict[str, Any], field: str
 ) -> None:
     section, key = field.split(".")
-    # The published boards share pull-ups, and have no sources, switch, power LED, bulk capacitor or
-    # ESD diodes; their wires have an order of their own.
+    # The published boards share pull-ups, and have no sources, switch, power LEDs, bulk capacitor
+    # or ESD diodes; their wires have an order of their own.
     differs = {"receiver.load", "emitter.drive", "emitter.switch"}
-    differs |= {"flange.indicator", "receiver.bulk_capacitor", "wiring.order", "protection.diode"}
+    differs |= {
+        "breakout.indicator",
+        "flange.indicator",
+        "receiver.bulk_capacitor",
+        "wiring.order",
+        "protection.diode",
+    }
     wanted = "auto" if field in differs else published[section][key]
     assert _property(schema, field)["default"] == wanted
 

@@ -1,4 +1,4 @@
-"""The power LED of the flange's board, followed along the copper, with its currents."""
+"""The power LED of a board beside the fingers, followed along the copper, with its currents."""
 
 import math
 import re
@@ -8,21 +8,19 @@ from lumitip_fab.checks.board_read import ReadBoard, ohm
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design.electrical import Indicator
 
-LED, RESISTOR = "D2", "R4"
 _CATHODE, _ANODE = "1", "2"
 _COIL, _TVS = "L1", "D1"
 
 
 def measure_indicator(read: ReadBoard) -> Iterator[Measurement]:
-    """The way from the output over resistor and LED to ground, the side that the LED stands on, its
-    currents, and the resistor's power; all from the values on the written board."""
-    if not any(flange.auxiliary == read.name for flange in read.design.flanges):
-        return
-    for lit in read.design.electrical.indicators:
-        yield read.count("indicator", list(_wrong(read)), "pads")
-        resistor = ohm(read.parts[RESISTOR].value) if RESISTOR in read.parts else math.nan
+    """The way from what feeds it over resistor and LED to ground, the side that the LED stands on,
+    its currents, and the resistor's power; all from the values on the written board."""
+    for lit in (lit for lit in read.design.electrical.indicators if lit.board == read.name):
+        yield read.count("indicator", list(_wrong(read, lit)), "pads")
+        part = read.parts.get(lit.resistor_ref)
+        resistor = ohm(part.value) if part is not None else math.nan
         low_ma, high_ma, watt = _figures(lit, resistor)
-        unseen = "at the lowest output, highest forward voltage and highest resistance"
+        unseen = "at the lowest supply, highest forward voltage and highest resistance"
         yield read.figure("indicator_dim", low_ma, lit.visible_ma, math.inf, "mA", unseen)
         yield read.figure("indicator_bright", high_ma, 0, lit.max_ma, "mA", "at the other ends")
         share = 100 * watt / lit.rated_w
@@ -40,23 +38,42 @@ def _figures(lit: Indicator, resistor: float) -> tuple[float, float, float]:
     return 1000 * low_v / most_ohm, 1000 * high_v / least_ohm, high_v**2 / least_ohm
 
 
-def _wrong(read: ReadBoard) -> Iterator[str]:
+def _wrong(read: ReadBoard, lit: Indicator) -> Iterator[str]:
     """Pads that are not where they belong, and an LED that cannot be seen."""
-    node = _ends(read) - {output_of(read), None}
+    led, supply = lit.led_ref, _feeding(read)
+    ends = {read.group(lit.resistor_ref, 1), read.group(lit.resistor_ref, 2)}
     for ref, pad, found, wanted in (
-        (RESISTOR, "supply end", {output_of(read)} & _ends(read), {output_of(read)}),
-        (LED, "anode", {read.group(LED, _ANODE)}, node),
-        (LED, "cathode", {read.group(LED, _CATHODE)}, {read.group(_TVS, "2")}),
+        (lit.resistor_ref, "supply end", {supply} & ends, {supply}),
+        (led, "anode", {read.group(led, _ANODE)}, ends - {supply, None}),
+        (led, "cathode", {read.group(led, _CATHODE)}, {_ground(read)}),
     ):
         if not wanted or None in wanted or found != wanted:
             yield f"{ref}: {pad}"
-    part = read.parts.get(LED)
+    part = read.parts.get(led)
     if part is not None and not part.front:
-        yield f"{LED}: on the side of the contacts"
+        yield f"{led}: on the back"
 
 
-def _ends(read: ReadBoard) -> set[int | None]:
-    return {read.group(RESISTOR, 1), read.group(RESISTOR, 2)}
+def _feeding(read: ReadBoard) -> int | None:
+    """The flange's output; on another board the controller's supply, at the receiver's wire."""
+    return (
+        output_of(read)
+        if _TVS in read.parts
+        else _at_wire(read, read.design.receiver.connector.supply)
+    )
+
+
+def _ground(read: ReadBoard) -> int | None:
+    return read.group(_TVS, "2") if _TVS in read.parts else _at_wire(read, GROUND)
+
+
+def _at_wire(read: ReadBoard, net: str) -> int | None:
+    """The copper at a cable's wire."""
+    for device in (d for d in read.components if d.kind == "wires" and d.pins):
+        for number, name in device.nets:
+            if name == net:
+                return read.group(device.ref, number)
+    return None
 
 
 def output_of(read: ReadBoard) -> int | None:

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -21,7 +22,7 @@ LABEL_MM = 5.0  # from a name's middle to its contact, at most
 LETTER = 0.6  # width of a letter at least, of its height
 DOT_MM = 0.1  # longest line that is a dot
 _NOISE_MM = 1e-4
-_POLAR = "DQUZ"  # first letters of parts that have a first pad
+_POLAR = re.compile(r"(D|Q|U|Z|LED)\d")  # references of parts that have a first pad
 _FIRST = "1"
 
 
@@ -41,7 +42,7 @@ def measure_prints(read: ReadBoard) -> Iterator[Measurement]:
     """Title and marks of parts; and that all that is printed can be read and is off pads."""
     rules, silk = read.design.rules, read.board.silk
     yield read.count("silk_title", list(_unprinted(read)), "lines")
-    if any(ref[:1] in _POLAR for ref in read.parts):
+    if any(map(_POLAR.match, read.parts)):
         yield read.count("silk_marks", [*_unmarked(read), *_first_pad(read)], "parts")
     letters = [word.height_mm for word in silk.words]
     yield read.figure("silk_letters", min(letters, default=math.nan), rules.silk_text_mm, math.inf)
@@ -156,7 +157,7 @@ def _unmarked(read: ReadBoard) -> Iterator[str]:
     for ref, part in read.parts.items():
         drawn = [line for line in lines.get(ref, ()) if line.front == part.front]
         pads = {t.number: t.copper.area for t in part.terminals if t.copper is not None}
-        if ref[:1] in {"D", "Q", "Z"} and not _leans(drawn, pads):
+        if _POLAR.match(ref) and ref[:1] != "U" and not _leans(drawn, pads):
             yield f"{ref} has no mark at pad 1"
         if ref[:1] == "U" and _dotted(drawn, pads) != {"1"}:
             yield f"{ref} has no dot at lead 1 alone"

@@ -69,6 +69,7 @@ class BreakoutParts:
     """Parts of the breakout board."""
 
     socket: controllers.Strip
+    indicator: electronics.Indicator | None
 
 
 @dataclass(frozen=True)

@@ -143,6 +143,8 @@ class Breakout(Strict):
     """Diameter of its two screw holes (mm)."""
     hole_spacing_mm: float = Field(ge=5, le=180)
     """From hole to hole, of the board and of its holder alike (mm)."""
+    indicator: Name
+    """Power LED at the controller's supply, in `parts/indicators.toml`, or "none"."""
 
 
 class Holder(Strict):

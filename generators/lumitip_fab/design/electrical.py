@@ -174,13 +174,17 @@ class PlugIn:
 
 @dataclass(frozen=True)
 class Indicator:
-    """The power LED of the flange's board with its resistor."""
+    """The power LED of a board beside the fingers, with its resistor."""
 
+    board: str
+    """Name of the board."""
+    led_ref: str
+    resistor_ref: str
     led: str
     """In the catalogue."""
     colour: str
     output_v: float
-    """Nominal voltage of the board's output, which feeds it."""
+    """Nominal voltage of what feeds it: the flange's output, or the controller's supply."""
     supply_tolerance: float
     """Fraction by which that may be off, either way."""
     resistor_tolerance: float
@@ -276,7 +280,7 @@ class Electrical:
     plug_ins: tuple[PlugIn, ...] = ()
     """The flange as it is plugged in; none without it."""
     indicators: tuple[Indicator, ...] = ()
-    """The flange's power LED; none without it."""
+    """The power LEDs, at most one for each board."""
     bulk: Bulk | None = None
     """The receiver's bulk capacitor; none without it."""
     protection: Protection | None = None

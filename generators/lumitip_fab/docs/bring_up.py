@@ -1,6 +1,7 @@
 """The manual's first test: supply, program, and both boards face to face."""
 
 import math
+from collections.abc import Iterator
 
 from lumitip_fab.design import Cabling, Design
 from lumitip_fab.text import passage
@@ -11,7 +12,7 @@ def first_test(design: Design) -> str:
     switched = design.wiring.emitter_pin is not None
     return _text(
         "tested",
-        loading=_loading(design),
+        loading=_loading(design) + "".join(_lights(design)),
         limit_ma=_limit_ma(design),
         poles=_poles(design.cabling, f"{design.wiring.supply_v:g}V"),
         supply_v=design.wiring.supply_v,
@@ -42,6 +43,12 @@ def _loading(design: Design) -> str:
     components = (device for board in design.auxiliary_boards for device in board.components)
     module = any(d.kind == "module" for d in components)
     return _text("bootloader" if module else "upload", controller=design.controller.title)
+
+
+def _lights(design: Design) -> Iterator[str]:
+    """The sign of the breakout's power LED, which the controller feeds."""
+    for lit in (lit for lit in design.electrical.indicators if lit.board == "breakout"):
+        yield _text("controller_light", lit=lit)
 
 
 def _text(name: str, /, **values: object) -> str:

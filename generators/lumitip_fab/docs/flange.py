@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from lumitip_fab.design import AuxiliaryBoard, Design, Flange
 from lumitip_fab.design.cabling import INPUT_END, front_headers, gripper_headers, plugged_headers
+from lumitip_fab.design.electrical import Indicator
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
 from lumitip_fab.docs.wiring import SLOT_MM2, listed
 from lumitip_fab.text import as_written, passage
@@ -32,7 +33,7 @@ def _needs(design: Design) -> Iterator[str]:
     """Tools, and what is used up."""
     yield "the keys and screwdrivers, a soldering iron, solder, side cutters, safety glasses"
     yield f"a multimeter, {design.strength.glue}, nitrile gloves"
-    if design.electrical.indicators:
+    if _lights(design):
         yield "a bench supply"
     if plugs(design):
         yield "a small vice"
@@ -49,7 +50,7 @@ def _work(design: Design, flange: Flange) -> Iterator[str]:
     yield _text("taken_off")
     yield _text("confirmed", volts=_volts(_raw(design)))
     yield _text("contacts", flange=flange)
-    for lit in design.electrical.indicators:
+    for lit in _lights(design):
         output = f"{lit.output_v:g}V"
         raw = _raw(design)
         yield _text("indicator", lit=lit, supply=_volts(raw), raw=raw, output=output)
@@ -62,7 +63,7 @@ def _work(design: Design, flange: Flange) -> Iterator[str]:
 
 def _powered(design: Design) -> Iterator[str]:
     """Where the flange's supply is measured once the gripper hides its board."""
-    for lit in design.electrical.indicators:
+    for lit in _lights(design):
         output = f"{lit.output_v:g}V"
         for part in front_headers(_flange(design)):
             plus, minus = (
@@ -74,6 +75,11 @@ def _powered(design: Design) -> Iterator[str]:
                 header = part.ref
                 yield _text("powered", header=header, volts=volts, plus=plus[0], minus=minus[-1])
                 return
+
+
+def _lights(design: Design) -> list[Indicator]:
+    """The power LED of the flange's board; none without it."""
+    return [lit for lit in design.electrical.indicators if lit.board == "flange"]
 
 
 def _chosen(design: Design) -> str:

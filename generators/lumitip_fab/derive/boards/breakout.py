@@ -2,7 +2,7 @@
 
 ```
 ┌────────────────────────────────┐
-│   [GND 24V LED]  [GND 24V 5V]  │  wires to the emitter and from the flange
+│ [GND 24V LED] R►| [GND 24V 5V] │  wires to the emitter and from the flange, power LED
 │  ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ │  a pad for each pin of the controller
 │  □ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ │  socket
 │   ·                        ·   │  screw holes; between the sockets parts at the pins
@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from lumitip_fab.catalogue.controllers import Plug, Strip
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors, ties
+from lumitip_fab.derive.boards.indicator import breakout_indicator
 from lumitip_fab.derive.boards.protection import breakout_protection, refuse_breakout
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.protection import pin_net
@@ -68,8 +69,10 @@ def derive_breakout(
     protecting = breakout_protection(config, muxing, cables, pins, beside_mm)
     band_mm = rows.wires_mm - connectors.WIDE[1] / 2 - beside_mm
     refuse_breakout(config, cables, protecting, band_mm, holes, faults)
+    light, legend = breakout_indicator(config, muxing, rows.wires_mm)
     marks = [(sign * (length / 2 - MARK_MM[0]), up * MARK_MM[1]) for sign, up in MARKS]
-    parts = (*joints, *protecting, *(fiducials(marks) if protecting else ()))
+    soldered = (*protecting, *light)
+    parts = (*joints, *soldered, *(fiducials(marks) if soldered else ()))
     screws = [(at, p.breakout.hole_mm) for at in holes]
     emitter = connectors.emitter_signals(config)
     return (
@@ -83,7 +86,7 @@ def derive_breakout(
             hole_mm=p.breakout.hole_mm,
             ties=ties.derive_ties(parts, box, CORNER_MM, screws, "breakout.board_mm", faults),
             components=parts,
-            notes=(Note("USB", (1.5 - length / 2, 0.0), 1.2, 90.0),),
+            notes=(Note("USB", (1.5 - length / 2, 0.0), 1.2, 90.0), *legend),
             supplies=tuple(dict.fromkeys(("GND", connectors.REGULATED, "3V3", emitter[1]))),
             keep_outs=(),
             hot_loop=(),

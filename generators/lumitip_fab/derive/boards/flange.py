@@ -17,7 +17,7 @@ With a module as its controller it is wider to the left: see `lumitip_fab.derive
 from lumitip_fab.catalogue.controllers import OPEN
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import flange_circuit
-from lumitip_fab.derive.boards.indicator import NOTE, flange_probes, indicator_parts
+from lumitip_fab.derive.boards.indicator import NOTE, flange_indicator, flange_probes
 from lumitip_fab.derive.boards.module import Supplies, derive_module
 from lumitip_fab.derive.boards.packages import capacitor
 from lumitip_fab.derive.boards.ties import derive_ties
@@ -68,7 +68,7 @@ def derive_flange(
     flange_circuit.refuse_parts(config, strings, faults)
     raw, supply, output = _supplies(config)
     wing = derive_module(config, module, muxing, Supplies(supply, output), BOX, faults)
-    light = indicator_parts(config, output)
+    light = flange_indicator(config, output)
     module_parts = wing.components if wing else ()
     parts = (*_input(config), *_regulator(config), *light, *module_parts)
     _refuse_lines(config, parts, faults)

@@ -5,7 +5,7 @@ import math
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.bulk import derive_bulk
 from lumitip_fab.derive.boards.flange_circuit import derive_regulated
-from lumitip_fab.derive.boards.indicator import derive_indicator
+from lumitip_fab.derive.boards.indicator import derive_indicators
 from lumitip_fab.derive.boards.plug_in import derive_plug_in
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.ambient import derive_ambient, scan_us
@@ -33,7 +33,7 @@ def derive_electrical(
         heat_w=sum(strings.current_ma) * p.supply.voltage_v / 1000,
         supplies=derive_regulated(config, faults),
         plug_ins=derive_plug_in(config, faults),
-        indicators=derive_indicator(config, faults),
+        indicators=derive_indicators(config, muxing, faults),
         bulk=derive_bulk(config, pull_ups),
         protection=protection,
         ambient=derive_ambient(config, channel, faults),
