@@ -11,12 +11,14 @@ from lumitip_fab.boards.files import board_files
 from lumitip_fab.checks import board
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
+from lumitip_fab.derive.boards.bulk import BESIDE_WIRES_MM
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import design_text, read_design
 from lumitip_fab.errors import InputError
 
 pytestmark = pytest.mark.slow
 
+PRESETS = {file.stem for file in (Path(__file__).parents[2] / "design/presets").glob("*.toml")}
 RECEIVER = "boards/receiver/receiver.kicad_pcb"
 CHECKS = {"bulk", "bulk_reach", "bulk_dip"}
 Damage = Callable[[str], str]
@@ -136,3 +138,20 @@ def test_the_dip_is_within_half_a_count(whole: Path) -> None:
     bulk = read_design(whole / "design.json").electrical.bulk
     assert bulk is not None
     assert 0 < bulk.dip_mv <= bulk.most_mv < 1000 * bulk.supply_v / 255
+
+
+def test_the_mark_of_the_first_wire_has_room_between_hole_and_capacitor(
+    designs: Callable[[str], Design],
+) -> None:
+    receiver = designs("wsg50").receiver
+    bulk, (tie,) = receiver.parts[-1], receiver.ties
+    assert bulk.kind == "capacitor"
+    hole_mm = min(x for x, _ in tie.holes) - tie.hole_mm / 2
+    assert hole_mm - bulk.box.x_max_mm >= BESIDE_WIRES_MM
+
+
+@pytest.mark.parametrize("preset", sorted(PRESETS))
+def test_every_preset_but_the_published_circuit_has_one(
+    preset: str, designs: Callable[[str], Design]
+) -> None:
+    assert (designs(preset).electrical.bulk is None) == (preset in {"published", "by_goals"})

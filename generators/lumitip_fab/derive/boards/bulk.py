@@ -30,8 +30,8 @@ MOST_COUNTS = 0.5
 REACH_MM = 19.0
 """From the capacitor's supply pad to that of the wire, at most: 19 nH of track, a tenth of the
 190 nH that the wire has."""
-BESIDE_WIRES_MM = 1.1
-"""To the row of wire pads, at whose end the mark of the first one stands."""
+BESIDE_WIRES_MM, MARK_MM = 1.1, 1.6
+"""To the row of wire pads, at whose end the mark of the first one stands, and its height."""
 APART_MM = 0.6
 EDGE_MM = 0.5
 BELOW_PARTS_MM = 0.6
@@ -122,6 +122,7 @@ def _place(part: Capacitor, finger: Finger, box: Box) -> Point | None:
         for tie in finger.ties
         for x, y in tie.holes
     ]
+    taken.append(_mark(finger))
     places = [
         (math.dist((x, y + along / 2), (supply_x, supply_y)), x, y)
         for x in steps(box.x_min_mm + EDGE_MM + across / 2, right)
@@ -132,6 +133,18 @@ def _place(part: Capacitor, finger: Finger, box: Box) -> Point | None:
     ]
     reach, x, y = min(places, default=(math.inf, 0.0, 0.0))
     return (x, y) if reach <= REACH_MM else None
+
+
+def _mark(finger: Finger) -> Box:
+    """Room for the mark of the first wire pad, which stands beyond a hole at the row's end."""
+    x, y = finger.connector.pads[0]
+    high = MARK_MM / 2
+    ends = [x - finger.connector.pad_mm / 2]
+    for tie in finger.ties:
+        ends += [
+            at - tie.hole_mm / 2 for at, up in tie.holes if abs(up - y) < high + tie.hole_mm / 2
+        ]
+    return Box(min(ends) - BESIDE_WIRES_MM, min(ends), y - high, y + high)
 
 
 def _upright(at: Point, across_mm: float, along_mm: float) -> Box:
