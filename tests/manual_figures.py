@@ -137,7 +137,8 @@ def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
     work = (*bench, "cable", "filled", "lowered", "clamped", "lifted")
     wanted |= {f"manual/{name}.svg" for name in work}
     wanted |= {f"manual/{name}_folded.svg" for name in names}
-    wanted |= {f"manual/{flange.name}.svg" for flange in design.flanges}
+    for flange in design.flanges:
+        wanted |= {f"manual/{flange.name}.svg", "manual/contacts.svg"}
     if design.mask.route != "tpu":
         wanted.add("mask/creasing.svg")
     wanted |= {f"boards/{name}/{name}_front.png" for name in boards}

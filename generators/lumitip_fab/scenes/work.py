@@ -14,6 +14,7 @@ from lumitip_fab.scenes.casting_page import Cast
 from lumitip_fab.scenes.casting_parts import nuts_of, screws_of, wires_of
 from lumitip_fab.scenes.casting_views import filled_view, lifted_view, lowered_view
 from lumitip_fab.scenes.clamped_view import clamped_view
+from lumitip_fab.scenes.contacts_view import contacts_view
 from lumitip_fab.scenes.finger_views import board_view, cable_view, folded_view
 from lumitip_fab.scenes.flange_view import flange_view
 from lumitip_fab.scenes.glb import Group
@@ -48,7 +49,8 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
         "clamped": clamped_view(cast, clamp, _clamp(design, files), nuts_of(design.clamps)),
         "lifted": lifted_view(cast),
     }
-    drawings |= {flange.name: _flange(design, flange, files) for flange in design.flanges}
+    for flange in design.flanges:
+        drawings |= {flange.name: _flange(design, flange, files), "contacts": contacts_view(flange)}
     for name, seen in layers.items():
         flaps = files.facts(f"mask/{name}_mask.svg")["flaps"]
         drawings[f"{name}_folded"] = folded_view(seen, flaps, _lip_y(design))
