@@ -51,6 +51,21 @@ def via_dropped(text: str) -> str:
     return once(text, rf"\n  \(via [^\n]*\(net {net[1]}\)[^\n]*", "")
 
 
+def via_beside_dropped(text: str) -> str:
+    """No ground via within a square of 4 mm round C1."""
+    at = re.search(
+        r"\(at (\S+) (\S+?)[ )]", text[: text.index('reference "C1"')].rpartition("(footprint")[2]
+    )
+    ground = re.search(r'\(net (\d+) "GND"\)', text)
+    assert at and ground
+
+    def kept(via: re.Match[str]) -> str:
+        off = max(abs(float(via[k]) - float(at[k])) for k in (1, 2))
+        return "" if off < 4 else via[0]
+
+    return re.sub(rf"\n  \(via \(at (\S+) (\S+)\)[^\n]*\(net {ground[1]}\)[^\n]*", kept, text)
+
+
 def via_ring_thin(text: str) -> str:
     return once(text, r"(\(via .*?\(size )0\.6\)", r"\g<1>0.5)")
 
@@ -138,6 +153,7 @@ RECEIVER_DAMAGES: dict[Damage, set[str]] = {
     detector_reversed: {"lands", "polarity", "silk_marks"},
     track_narrow: {"track_width"},
     via_dropped: {"open", "service"},
+    via_beside_dropped: {"bypass_via"},
     via_ring_thin: {"via_ring"},
     hole_moved: {"holes", "hole_clearance"},
     hole_narrow: {"hole_width", "pin_clearance"},

@@ -11,6 +11,7 @@ from lumitip_fab.boards.panel.model import panel_files
 from lumitip_fab.boards.placement import place
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.route import route
+from lumitip_fab.boards.route.wider import with_wider_tracks
 from lumitip_fab.boards.teardrops import with_teardrops
 from lumitip_fab.boards.verify import require_clean_drc
 from lumitip_fab.design import AuxiliaryBoard, Design, Finger
@@ -36,7 +37,7 @@ def finished(placement: Placement) -> BoardModel:
     Raises:
         BuildError: if a net cannot be routed, or the copper breaks its rules.
     """
-    routing = route(placement)
+    routing = with_wider_tracks(placement, route(placement))
     if placement.flexible:
         routing = with_teardrops(placement, routing)
     routing, fills, solid = pour(placement, routing)

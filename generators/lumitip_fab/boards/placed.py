@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from shapely import Point as Dot
 from shapely import Polygon, affinity, box
 
-from lumitip_fab.boards.model import SIDES, PlacedComponent
+from lumitip_fab.boards.model import SIDES, PlacedComponent, Placement
 from lumitip_fab.design import Box, Component, Pad, Point, Side
 
 
@@ -68,6 +68,20 @@ def placed_pads(component: Component) -> tuple[PlacedPad, ...]:
             _area(pad, component.angle_deg, at),
         )
         for pad in component.footprint.pads
+    )
+
+
+BYPASS_MM = 1.0  # from the edge of a capacitor's ground pad to the middle of a via, at most
+
+
+def bypass_pads(placement: Placement) -> tuple[PlacedPad, ...]:
+    """Ground pads of capacitors that are soldered on one side: each has a ground via beside it."""
+    return tuple(
+        pad
+        for component in placement.components
+        if component.ref.startswith("C")
+        for pad in placed_pads(component)
+        if pad.net == placement.ground and not pad.pad.drill_mm
     )
 
 

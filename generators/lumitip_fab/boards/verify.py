@@ -60,7 +60,7 @@ def verify(model: BoardModel) -> tuple[Fault, ...]:
 
     Clearances are those of the net classes, the greater of the two; every net is in one piece.
     """
-    copper = _copper(model)
+    copper = copper_of(model)
     cores = np.array([c.core for c in copper], dtype=object)
     radii = np.array([c.radius_mm for c in copper])
     shapely.prepare(cores)
@@ -85,7 +85,8 @@ def verify(model: BoardModel) -> tuple[Fault, ...]:
     )
 
 
-def _copper(model: BoardModel) -> list[Copper]:
+def copper_of(model: BoardModel) -> list[Copper]:
+    """Every piece of a board's copper: pads, tracks, vias, then the pour."""
     copper = []
     for component in model.placement.components:
         for pad in placed_pads(component):

@@ -243,6 +243,7 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     board_copper.measure_nets,
     board_copper.measure_joined,
     board_copper.measure_spokes,
+    board_copper.measure_bypass_vias,
     board_copper.measure_supplies,
     board_copper.measure_hot_loop,
     board_copper.measure_crystal,

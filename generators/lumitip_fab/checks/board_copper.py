@@ -25,6 +25,7 @@ CRYSTAL_MM = 3.0
 assumed."""
 LEAST_SPOKES = 2
 """Default of `min_resolved_spokes` of KiCad 6 to 10."""
+VIA_MM = 1.0  # from the edge of a capacitor's ground pad to the middle of a via, at most
 _BESIDE_MM = 0.1  # from the pad, inside its thermal gap
 _SOLID = 0.6  # of a pad's area, which the pour covers where it joins the pad all round
 _ROUND_MM = 0.0006  # what chords of round copper take away, and six digits in files
@@ -190,6 +191,20 @@ def _spokes(fill: BaseGeometry, pad: Copper) -> int:
         if start == end and len(touching) > 1:
             return len(pieces) - 1
     return len(pieces)
+
+
+def measure_bypass_vias(read: ReadBoard) -> Iterator[Measurement]:
+    """From each soldered ground pad of a capacitor to the nearest via that its copper leads to."""
+    vias = [(c, shapely.centroid(c.area)) for c in read.board.loose if c.kind == "via"]
+    away: dict[str, float] = {}
+    for part, terminal, pad in lands(read.board):
+        if part.ref.startswith("C") and terminal.net == "GND" and not terminal.drill_mm:
+            group = read.clusters.of(pad)
+            near = [pad.area.distance(at) for via, at in vias if read.clusters.of(via) == group]
+            away[f"{part.ref}.{terminal.number}"] = min(near, default=math.inf)
+    if away:
+        worst = max(away, key=lambda name: away[name])
+        yield read.figure("bypass_via", away[worst], 0, VIA_MM, note=f"to a via, at {worst}")
 
 
 def measure_hot_loop(read: ReadBoard) -> Iterator[Measurement]:

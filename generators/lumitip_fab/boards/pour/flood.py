@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from shapely import Geometry
 
 from lumitip_fab.boards.model import SIDES, Fill, NetClass, Placement, Routing, Track, Via
-from lumitip_fab.boards.placed import PlacedPad, placed_pads
+from lumitip_fab.boards.placed import BYPASS_MM, PlacedPad, bypass_pads, placed_pads
 from lumitip_fab.boards.pour.ground import Kept, needed
 from lumitip_fab.boards.pour.room import MARGIN_MM, Sheet, room, sheet, via_room
 from lumitip_fab.boards.route.kernels import kernel
@@ -19,7 +19,6 @@ from lumitip_fab.design import Point, Side
 
 LATTICE_MM = 0.5  # places tried
 APART_MM = 6.0  # between stitching vias, where there is room
-BYPASS_MM = 1.0  # from a capacitor's ground pad to a via, where there is room
 _APART_MM = 0.01  # round pieces of pour that are left out
 
 
@@ -124,9 +123,10 @@ def pour(
     ]
     if not pads:
         return routing, (), frozenset()
-    bypasses = [pad for pad in pads if pad.component.ref.startswith("C")]
+    bypasses = bypass_pads(placement)
     rooms = {side: room(placement, routing, side) for side in SIDES}
     others, own = _split(placement, routing)
+    beside = [v for v in own.vias if any(_away_mm(p, [v])[0] <= BYPASS_MM for p in bypasses)]
     kind = _kind(placement)
     free = via_room(placement, routing, kind.via_mm, kind.via_drill_mm)
     filled = _Sheets(pads)
@@ -134,7 +134,7 @@ def pour(
         filled.fill(rooms)
         sheets = filled.of
         whole = [shapely.union_all(sheets[side].pieces) for side in SIDES]
-        possible = candidates(placement, free, *whole)
+        possible = [*beside, *candidates(placement, free, *whole)]
         kept = needed(pads, sheets, own, possible)
         pieces, stitches = _stitched(sheets, kept, possible, bypasses)
         vias = (*kept.vias, *stitches)
@@ -241,7 +241,7 @@ def _split(placement: Placement, routing: Routing) -> tuple[Routing, Routing]:
     return others, own
 
 
-def _beside(pads: list[PlacedPad], possible: list[Via], present: list[Via]) -> list[Via]:
+def _beside(pads: Sequence[PlacedPad], possible: list[Via], present: list[Via]) -> list[Via]:
     """The nearest via for each pad that has none beside it yet, where one is near."""
     added: list[Via] = []
     for pad in pads:
@@ -258,7 +258,7 @@ def _away_mm(pad: PlacedPad, vias: Sequence[Via]) -> NDArray[np.float64]:
 
 
 def _stitched(
-    sheets: dict[Side, Sheet], kept: Kept, possible: list[Via], bypasses: list[PlacedPad]
+    sheets: dict[Side, Sheet], kept: Kept, possible: list[Via], bypasses: Sequence[PlacedPad]
 ) -> tuple[dict[Side, list[int]], list[Via]]:
     """Join more pieces of pour to those that are ground, and all of them at many places.
 

@@ -36,7 +36,7 @@ def room(placement: model.Placement, routing: model.Routing, side: Side) -> Geom
         for t in _things(placement, routing)
         if side in t.sides
     ]
-    free = shapely.difference(_board(placement, MARGIN_MM), shapely.union_all(taken))
+    free = shapely.difference(free_board(placement, MARGIN_MM), shapely.union_all(taken))
     return opened(free)
 
 
@@ -59,7 +59,7 @@ def via_room(
         taken.append(shapely.box(*bend.bounds_mm))
     apart = drill_mm + DRILL_WALL_MM + MARGIN_MM
     taken += [shapely.Point(v.x_mm, v.y_mm).buffer(apart) for v in routing.vias]
-    board = _board(placement, radius)
+    board = free_board(placement, radius)
     return shapely.difference(board, shapely.union_all(taken))
 
 
@@ -98,7 +98,7 @@ def _things(placement: model.Placement, routing: model.Routing) -> Iterator[Thin
             yield Thing(at, via.diameter_mm / 2, model.SIDES, max(least, of_net[via.net]))
 
 
-def _board(placement: model.Placement, radius_mm: float) -> Geometry:
+def free_board(placement: model.Placement, radius_mm: float) -> Geometry:
     """Where the middle of something round may be: away from edge, holes and keep-outs."""
     box, corner = placement.outline, placement.corner_mm
     edge_mm = placement.edge_clearance_mm + radius_mm

@@ -15,7 +15,7 @@ VIA_MM = 10.0  # of track that a via is worth
 SEARCHED_VIA_MM = 12.0  # the same while ways with fewer are looked for
 GROUND_COSMETIC_VIA_MM = 4.0
 GROUND_VIA_MM = 1.0  # the pour has vias of its own, and takes away those that it makes needless
-FIRST_PRICE = 1.0  # of a net in the way
+FIRST_PRICE = 2.0  # of a net in the way
 GROWTH = 1.6  # of that price with each round
 TOP_PRICE = 60.0
 HISTORY = 0.2  # more for each round that a node is fought for
@@ -182,7 +182,7 @@ def lower_via_count(state: State, nets: list[Wanted], ground: str) -> None:
 def _moves(state: State, nets: list[Wanted], ground: str) -> Iterator[tuple[Wanted, Ints | None]]:
     """Nets with vias, those with most first: the net as a whole, then each path with a via."""
     copper = {net.name: Copper.of(state, net) for net in nets}
-    some = [net for net in nets if copper[net.name].vias and net.name != ground]
+    some = [n for n in nets if copper[n.name].vias and n.name != ground and not n.places.size]
     some.sort(key=lambda n: (-copper[n.name].vias, -round(copper[n.name].length_mm, 6)))
     for net in some:
         if Copper.of(state, net).vias:

@@ -1,6 +1,6 @@
 """Where no track and no via can be, and where the tracks of a net end."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -160,6 +160,10 @@ class Wanted:
     terminals: tuple[Terminal, ...]
     neck: Bytes
     """`(H, W)`: 1 where its tracks are narrow."""
+    places: Ints = field(default_factory=lambda: np.empty(0, dtype=np.int32))
+    """Of a net that is one via and no track: the nodes of the front where it may be,"""
+    costs: Reals = field(default_factory=lambda: np.empty(0))
+    """and the cost of each."""
 
 
 def wanted(

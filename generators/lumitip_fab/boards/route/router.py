@@ -6,8 +6,9 @@ from collections import defaultdict
 from dataclasses import dataclass
 
 from lumitip_fab.boards.model import SIDES, Placement, Routing, Track, Via
-from lumitip_fab.boards.placed import PlacedPad, placed_pads
+from lumitip_fab.boards.placed import PlacedPad, bypass_pads, placed_pads
 from lumitip_fab.boards.route import stamps
+from lumitip_fab.boards.route.beside import beside
 from lumitip_fab.boards.route.fewer_vias import lower_via_count, polish
 from lumitip_fab.boards.route.kernels import Ints
 from lumitip_fab.boards.route.obstacles import Obstacles, TightError, Wanted, wanted
@@ -93,6 +94,7 @@ these at cheap vias, and were routed at other growths; one of 55 cells that bend
 the bend, was routed only with its nets in the other order. Vias are dear at first, with a slow
 history, so that nets have time to find a way without; the few that still fight late get them
 cheaper with each round."""
+TRIES_WITH_VIAS = 4  # beside capacitors: a crowded board has no room for them all
 LATE = 13
 FIRST_PRICE = 0.6  # of a net in the way, in the first round
 TOP_PRICE = 30.0
@@ -165,13 +167,16 @@ def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int
 def negotiate_until_free(state: State, nets: list[Wanted]) -> tuple[int, dict[str, Ints]]:
     """`negotiate` under one pressure after the other, until no net is in the way of another.
 
+    The last tries leave out the vias beside capacitors.
+
     Returns:
         As `negotiate`: the rounds of all tries, and the fight of the try that came nearest.
     """
     rounds, nearest = 0, None
-    for pressure in TRIES:
+    for number, pressure in enumerate(TRIES):
         state.clear()
-        ordered = nets[::-1] if pressure.backwards else nets
+        some = nets if number < TRIES_WITH_VIAS else [n for n in nets if not n.places.size]
+        ordered = some[::-1] if pressure.backwards else some
         turns, fought = negotiate(state, ordered, pressure)
         rounds += turns
         if not fought:
@@ -192,7 +197,7 @@ def route(placement: Placement) -> Routing:
     Returns:
         Tracks and vias, the same for the same placement. Ground is routed like any other net,
         with the thinnest tracks; `pour` then takes away what its filled areas, which carry the
-        current, make needless.
+        current, make needless, and joins the vias beside capacitors, which no track leads to.
 
     Raises:
         BuildError: there is not enough room; names the nets and the places.
@@ -222,6 +227,7 @@ def _routed(placement: Placement, rules: Rules, pitch_mm: float) -> Routing:
     nets.sort(
         key=lambda net: (net.wide == rules.narrow, net.name == placement.ground, _extent_mm(net))
     )
+    nets = [*beside(bypass_pads(placement), fixed, state.owner), *nets]
     try:
         rounds, fought = negotiate_until_free(state, nets)
     except Unreachable as fault:
@@ -233,13 +239,15 @@ def _routed(placement: Placement, rules: Rules, pitch_mm: float) -> Routing:
         ) from None
     if fought:
         raise BuildError(_unfinished(placement, grid, fought, rounds))
+    nets = [net for net in nets if net.name in state.routed]
     lower_via_count(state, nets, placement.ground)
     polish(state, nets, placement.ground)
     tracks, vias = [], []
     for net in nets:
         some_tracks, some_vias = copper(grid, rules, net, state.paths(net))
         tracks += some_tracks
-        vias += some_vias
+        name = placement.ground if net.places.size else net.name
+        vias += [dataclasses.replace(via, net=name) for via in some_vias]
     return Routing(tuple(tracks), tuple(vias), rounds)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumitip_fab.boards.route import kernels, stamps
+from lumitip_fab.boards.route.beside import cheapest
 from lumitip_fab.boards.route.kernels import INSIDE_PAD, Ints
 from lumitip_fab.boards.route.obstacles import Terminal, Wanted
 from lumitip_fab.boards.route.rules import HOLE_TO_HOLE_MM, Grid, Rules
@@ -141,6 +142,8 @@ def connect(state: State, net: Wanted, kept: list[Ints], weights: CostWeights) -
     Raises:
         Unreachable: a pad is walled in by what is fixed.
     """
+    if net.places.size:
+        return [cheapest(net, state.taken[net.wide, 2], state.history, weights.price)]
     touched = [t.nodes for t in net.terminals]
     for nodes in touched:
         state.tree[nodes] |= INSIDE_PAD
