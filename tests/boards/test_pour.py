@@ -20,9 +20,9 @@ from lumitip_fab.boards.model import (
     Routing,
     Track,
 )
-from lumitip_fab.boards.placed import placed_pads
+from lumitip_fab.boards.placed import BYPASS_MM, bypass_pads, placed_pads
 from lumitip_fab.boards.pour import pour
-from lumitip_fab.boards.pour.flood import BYPASS_MM, spread
+from lumitip_fab.boards.pour.flood import spread
 from lumitip_fab.boards.route import route
 from lumitip_fab.boards.verify import summary, verify
 from lumitip_fab.errors import BuildError
@@ -72,6 +72,10 @@ def test_presets_have_no_fault(design_dir: Path, preset: str, finger: str) -> No
     routing, fills, _ = pour(placement, route(placement))
     faults = verify(BoardModel(placement, routing, fills))
     assert not faults, summary(faults)
+    ground = [shapely.Point(v.x_mm, v.y_mm) for v in routing.vias if v.net == placement.ground]
+    for pad in bypass_pads(placement):
+        away = [pad.area.distance(via) for via in ground]
+        assert min(away) <= BYPASS_MM, pad.component.ref
     box = placement.outline
     for side in SIDES:
         share = sum(f.area.area for f in fills if f.side == side) / (box.width_mm * box.length_mm)

@@ -9,6 +9,7 @@ import numpy as np
 from lumitip_fab.boards.route import stamps
 from lumitip_fab.boards.route.kernels import Ints
 from lumitip_fab.boards.route.obstacles import Wanted
+from lumitip_fab.boards.route.spread import Spread
 from lumitip_fab.boards.route.trees import CostWeights, State, Unreachable, connect, supported
 
 VIA_MM = 10.0  # of track that a via is worth
@@ -202,20 +203,25 @@ def polish(state: State, nets: list[Wanted], ground: str) -> None:
         nets: all of the board.
         ground: name of the net that may get more vias by it.
     """
-    state.history[:] = 0
+    spread = Spread(state, [net for net in nets if net.name != ground])
     for _ in range(POLISHES):
         for net in nets:
             before, vias = state.routed[net.name], Copper.of(state, net).vias
-            weights = GROUND_COSMETIC if net.name == ground else COSMETIC
+            is_ground = net.name == ground
             state.count(net, -1)
+            if not is_ground:
+                spread.count(net, -1)
+            spread.weigh(net)
             try:
+                weights = GROUND_COSMETIC if is_ground else COSMETIC
                 state.routed[net.name] = connect(state, net, [], weights)
             except Unreachable:  # a bend too sharp or a via too near: it stays as it was
-                continue
-            finally:
-                state.count(net, 1)
-            more = net.name != ground and Copper.of(state, net).vias > vias
+                pass
+            state.count(net, 1)
+            more = not is_ground and Copper.of(state, net).vias > vias
             if more or state.contested(net).size:
                 state.count(net, -1)
                 state.routed[net.name] = before
                 state.count(net, 1)
+            if not is_ground:
+                spread.count(net, 1)

@@ -13,10 +13,10 @@ from lumitip_fab.boards.model import BoardModel, Placement, Routing, Track, fidu
 from lumitip_fab.boards.placed import placed_pads
 from lumitip_fab.boards.pour.room import free_board
 from lumitip_fab.boards.route.rules import MARGIN_MM
+from lumitip_fab.boards.route.spread import WIDE_MM
 from lumitip_fab.boards.verify import copper_of
 from lumitip_fab.design import Side
 
-WIDE_MM = 0.25  # width that narrow tracks get
 LEAST_MM = 1.0  # part of a straight piece that gets it by itself
 _STEP_MM = 0.01  # such parts end at whole multiples of this along x or y
 _HALF_MM = WIDE_MM / 2 + MARGIN_MM
