@@ -1,5 +1,6 @@
 """Damage the board files, and exactly the right checks fail."""
 
+import math
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -51,19 +52,18 @@ def via_dropped(text: str) -> str:
     return once(text, rf"\n  \(via [^\n]*\(net {net[1]}\)[^\n]*", "")
 
 
-def via_beside_dropped(text: str) -> str:
-    """No ground via within a square of 4 mm round C1."""
-    at = re.search(
-        r"\(at (\S+) (\S+?)[ )]", text[: text.index('reference "C1"')].rpartition("(footprint")[2]
-    )
-    ground = re.search(r'\(net (\d+) "GND"\)', text)
+def vias_beside_dropped(text: str) -> str:
+    """No ground via within 2.4 mm of the middle of C2."""
+    part = text[: text.index('(fp_text reference "C2"')].rpartition("\n  (footprint")[2]
+    at, ground = re.search(r"\(at (\S+) (\S+?)[ )]", part), re.search(r'\(net (\d+) "GND"\)', text)
     assert at and ground
+    middle = float(at[1]), float(at[2])
 
     def kept(via: re.Match[str]) -> str:
-        off = max(abs(float(via[k]) - float(at[k])) for k in (1, 2))
-        return "" if off < 4 else via[0]
+        return "" if math.dist(middle, (float(via[1]), float(via[2]))) < 2.4 else via[0]
 
-    return re.sub(rf"\n  \(via \(at (\S+) (\S+)\)[^\n]*\(net {ground[1]}\)[^\n]*", kept, text)
+    via = rf"\n  \(via \(at (\S+) (\S+)\)[^\n]*\(net {ground[1]}\)[^\n]*"
+    return re.sub(via, kept, text)
 
 
 def via_ring_thin(text: str) -> str:
@@ -153,7 +153,7 @@ RECEIVER_DAMAGES: dict[Damage, set[str]] = {
     detector_reversed: {"lands", "polarity", "silk_marks"},
     track_narrow: {"track_width"},
     via_dropped: {"open", "service"},
-    via_beside_dropped: {"bypass_via"},
+    vias_beside_dropped: {"bypass_via", "islands"},
     via_ring_thin: {"via_ring"},
     hole_moved: {"holes", "hole_clearance"},
     hole_narrow: {"hole_width", "pin_clearance"},
@@ -162,6 +162,7 @@ RECEIVER_DAMAGES: dict[Damage, set[str]] = {
     pull_up_wrong: {"service"},
     capacitor_missing: {"bypass_supply", "bypass_ground"},
     capacitor_far: {
+        "bypass_via",
         "bypass_supply",
         "bypass_ground",
         "channels",

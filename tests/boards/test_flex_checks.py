@@ -30,7 +30,7 @@ def via_in_the_bend(text: str) -> str:
     number = re.search(r'\(net (\d+) "GND"\)', text)
     assert number
     via = (
-        f'(via (at 151 96) (size 0.6) (drill 0.3) (layers "F.Cu" "B.Cu") (net {number[1]})'
+        f'(via (at 163.2 96.4) (size 0.6) (drill 0.3) (layers "F.Cu" "B.Cu") (net {number[1]})'
         " (tstamp 00000000-0000-0000-0000-000000000001))"
     )
     return once(text, r"\n  \(zone\n", lambda m: f"\n  {via}{m[0]}")

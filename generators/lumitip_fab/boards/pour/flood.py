@@ -242,12 +242,12 @@ def _split(placement: Placement, routing: Routing) -> tuple[Routing, Routing]:
 
 
 def _beside(pads: Sequence[PlacedPad], possible: list[Via], present: list[Via]) -> list[Via]:
-    """The nearest via for each pad that has none beside it yet, where one is near."""
+    """The nearest via for each pad that has none as near yet, where one is near."""
     added: list[Via] = []
     for pad in pads:
         away_mm = _away_mm(pad, possible)
         has = _away_mm(pad, [*present, *added]).min(initial=math.inf)
-        if away_mm.min(initial=math.inf) <= BYPASS_MM < has:
+        if away_mm.min(initial=math.inf) <= BYPASS_MM and away_mm.min() < has:
             added.append(possible[int(away_mm.argmin())])
     return added
 
