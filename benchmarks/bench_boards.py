@@ -14,11 +14,12 @@ from pathlib import Path
 from typing import TypeVar
 
 from common import Goals
-from lumitip_fab.boards.files import model_files
+from lumitip_fab.boards.files import finished, model_files
 from lumitip_fab.boards.model import BoardModel
 from lumitip_fab.boards.placement import place
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.route import route
+from lumitip_fab.boards.route.wider import with_wider_tracks
 from lumitip_fab.boards.verify import verify
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
@@ -89,7 +90,7 @@ def measure(design: Design, finger: Finger, goals: Goals) -> str:
 
     busy = time.process_time()
     placement = timed(lambda: place(d, finger))
-    found = timed(lambda: route(placement))
+    found = timed(lambda: with_wider_tracks(placement, route(placement)))
     routing, fills, _ = timed(lambda: pour(placement, found))
     model = BoardModel(placement, routing, fills)
     timed(lambda: model_files(design, model))
@@ -128,8 +129,7 @@ def main(counts: list[int]) -> int:
 
 def _board(design: Design) -> BoardModel:
     d = design
-    placement = place(d, d.emitter)
-    return BoardModel(placement, *pour(placement, route(placement)))
+    return finished(place(d, d.emitter))
 
 
 if __name__ == "__main__":
