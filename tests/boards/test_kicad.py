@@ -1,6 +1,7 @@
 """KiCad itself on the written boards: rules, schematic parity, plots, and its own copper fill."""
 
 import json
+import re
 import shutil
 import zipfile
 from collections.abc import Callable
@@ -11,6 +12,7 @@ import shapely
 
 from lumitip_fab.checks.readers.gerber import gerber_area
 from lumitip_fab.checks.readers.kicad_board import read_board
+from lumitip_fab.design.encoding import read_design
 from programs import needs
 
 Boards = Callable[[str], Path]
@@ -31,8 +33,14 @@ ALL = (
 )
 """Every board of every preset."""
 ALLOWED: dict[str, str] = {}  # names of warnings, each with the reason why it may stand
-# What boards with finer copper than KiCad's defaults show of it.
-FINER = {"dense": {"clearance", "copper_edge_clearance", "drill_out_of_range", "via_diameter"}}
+FINER = {
+    "clearance": "copper_gap_mm",
+    "copper_edge_clearance": "edge_gap_mm",
+    "drill_out_of_range": "via_drill_mm",
+    "via_diameter": "via_mm",
+}
+"""What copper that is finer than KiCad's defaults shows of it, and the design's own least figure."""
+ROUNDED_MM = 0.001
 # Share of KiCad's fill that ours may leave out. Ours drops pieces that lead from one pad to
 # nowhere, of which crowded boards have many: 2.3 % of the dense receiver, 2.7 % of the flange with
 # the module.
@@ -100,8 +108,14 @@ def test_kicad_finds_no_error_by_its_default_rules(
     )
     told = json.loads(report.read_text())
     assert told["unconnected_items"] == []
-    faults = {v["type"] for v in told["violations"]}
-    assert faults <= FINER.get(preset, set()), told["violations"][:3]
+    rules = read_design(boards(preset) / "design.json").rules
+    for violation in told["violations"]:
+        assert violation["type"] in FINER, violation
+        found = re.search(r"([\d.]+) mm; actual ([\d.]+) mm", violation["description"])
+        assert found, violation
+        own = getattr(rules, FINER[violation["type"]])
+        assert own < float(found[1]), "the design asks for no finer one"
+        assert float(found[2]) >= own - ROUNDED_MM, violation
 
 
 @pytest.mark.parametrize(("preset", "name"), EVERY)
