@@ -39,7 +39,7 @@ FINER = {
     "drill_out_of_range": "via_drill_mm",
     "via_diameter": "via_mm",
 }
-"""What copper that is finer than KiCad's defaults shows of it, and the design's own least figure."""
+"""What copper finer than KiCad's defaults shows of it, and the design's own least figure."""
 ROUNDED_MM = 0.001
 # Share of KiCad's fill that ours may leave out. Ours drops pieces that lead from one pad to
 # nowhere, of which crowded boards have many: 2.3 % of the dense receiver, 2.7 % of the flange with
