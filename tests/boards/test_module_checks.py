@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from board_damages import moved_part, once, swapped_pads
+from board_damages import in_part, moved_part, once, swapped_pads
 from damages import failing
 from lumitip_fab.checks import board
 from lumitip_fab.design.encoding import read_design
@@ -60,13 +60,26 @@ def rule_of_one_side(text: str) -> str:
 
 
 def pads_exchanged(text: str) -> str:
-    """Pads of A0 and A1 with each other's number: their copper and its nets stay."""
-    return swapped_pads(text, "U2", "20", "21")
+    """Pads of A2 and A3 with each other's number: their copper and its nets stay."""
+    return swapped_pads(text, "U2", "14", "10")
 
 
 def supply_at_an_analog_pad(text: str) -> str:
-    """Pads of A0 and VDD with each other's number: A0 leaves by the wire beside S2."""
-    return swapped_pads(text, "U2", "20", "28")
+    """Pads of A2 and VDD with each other's number: A2 leaves by the wire beside S2."""
+    return swapped_pads(text, "U2", "14", "28")
+
+
+def diode_turned(text: str) -> str:
+    """Pads of a diode at an analog wire with each other's number."""
+    return swapped_pads(text, "Z5", "1", "2")
+
+
+def resistor_small(text: str) -> str:
+    return in_part(text, "R8", r'value "1K"', 'value "100R"')
+
+
+def capacitor_large(text: str) -> str:
+    return in_part(text, "C11", r'value "22pF"', 'value "47pF"')
 
 
 def module_askew(text: str) -> str:
@@ -107,8 +120,15 @@ DAMAGES: dict[Damage, set[str]] = {
     rule_missing: {"keep_out_rule"},
     rule_lets_the_pour_in: {"keep_out_rule"},
     rule_of_one_side: {"keep_out_rule"},
-    pads_exchanged: {"lands", "joined", "apart"},
-    supply_at_an_analog_pad: {"lands", "joined", "apart", "wire_order"},
+    pads_exchanged: {"lands", "joined", "apart", "protection"},
+    supply_at_an_analog_pad: {
+        *("lands", "joined", "apart", "wire_order"),
+        *("protection", "protection_line", "protection_pins", "protection_pulse"),
+    },
+    diode_turned: {"lands", "joined", "apart", "silk_marks"}
+    | {"protection", "protection_reach", "protection_pulse"},
+    resistor_small: {"protection_pulse"},
+    capacitor_large: {"protection_line"},
     module_askew: {"lands", "clearance"},  # its tracks stay where they are
     edge_beyond_the_antenna: {"outline", "antenna_edge"},
 }

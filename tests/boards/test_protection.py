@@ -160,7 +160,7 @@ def test_each_signal_has_its_parts(designs: Callable[[str], Design]) -> None:
     assert protection.lines == ("S0", "S1", "S2", "A0", "A1", "LED")
     assert set(protection.clamped) == {*protection.lines, "3V3", "5V"}
     assert kinds.count("esd diode") == 8
-    assert kinds.count("resistor") == 6
+    assert kinds.count("resistor") == 6 + 1  # that of the power LED
     assert kinds.count("capacitor") == 2
     assert kinds.count("fiducial") == 3
     assert protection.most_pin_a is not None

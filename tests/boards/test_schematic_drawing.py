@@ -145,8 +145,16 @@ def test_each_block_has_its_title(drawn: Drawn) -> None:
     flange = _titles(drawn(("published", "flange"))[2])
     assert [t for t in flange if "open" not in t] == [*path, buck, "Headers", *last]
     whole = _titles(drawn(("integrated", "flange"))[2])
+    pins = "Protection of the pins"
     module = ["Controller: Raytac MDBT50Q", "Headers", *wires, "USB", "Debugger", *last]
-    assert [t for t in whole if "open" not in t] == [*path, buck, "Power LED", linear, *module]
+    assert [t for t in whole if "open" not in t] == [
+        *path,
+        buck,
+        "Power LED",
+        pins,
+        linear,
+        *module,
+    ]
     simple = _titles(drawn(("five volts", "flange"))[2])
     assert [t for t in simple if "open" not in t] == [*path, "Power LED", "Headers", *last]
     breakout = _titles(drawn(("published", "breakout"))[2])
@@ -163,7 +171,7 @@ def test_pins_have_their_types(drawn: Drawn) -> None:
     assert types["Regulator_U3"] == {"IN": "power_in", "GND": "power_in", "OUT": "power_out"}
     module = types["Module_U2"]
     assert {module[name] for name in ("VDD", "VDDH", "VBUS", "GND")} == {"power_in"}
-    assert (module["A0"], module["SWDCLK"], module["USB_DM"]) == (
+    assert (module["A2"], module["SWDCLK"], module["USB_DM"]) == (
         *("bidirectional", "input", "bidirectional"),
     )
     assert types["Transistor_Q1"] == {"G": "input", "S": "passive", "D": "passive"}

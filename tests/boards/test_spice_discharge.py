@@ -16,8 +16,7 @@ from lumitip_fab.design.electrical import Protection
 from spice_runs import needs_ngspice, simulated
 
 pytestmark = pytest.mark.slow
-FILES = ("fingertip.toml", "presets/mux16.toml")
-SIGNALS = ("a0", "s0")
+FILES = ("fingertip.toml", "presets/mux16.toml", "presets/integrated.toml")
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +59,7 @@ def test_a_pin_s_current_is_within_its_rating(design_dir: Path, file: str, tmp_p
     design = derive(load(design_dir / file))
     protection, found = _protection(design), _simulated(design, tmp_path)
     assert protection.most_pin_a is not None
-    for net in SIGNALS:
+    for net in (design.wiring.adc_pins[0].lower(), "s0"):
         high, low = found[f"pin_a_high_{net}"], -found[f"pin_a_low_{net}"]
         assert min(high, low) > 0.01
         assert max(high, low) <= protection.pin_a <= protection.most_pin_a

@@ -32,14 +32,14 @@ def replaced(old: str, new: str) -> Edit:
 
 
 def pads_exchanged(text: str) -> str:
-    """The module's pads of the pins A0 and A1 on each other's net."""
-    text = in_part(text, "U2", r'(pad "20"[^\n]*)"A0"', r'\g<1>"A?"')
-    text = in_part(text, "U2", r'(pad "21"[^\n]*)"A1"', r'\g<1>"A0"')
-    return in_part(text, "U2", r'(pad "20"[^\n]*)"A\?"', r'\g<1>"A1"')
+    """The module's pads of the pins A2 and A3 on each other's net."""
+    text = in_part(text, "U2", r'(pad "14"[^\n]*)"A2_PIN"', r'\g<1>"A?"')
+    text = in_part(text, "U2", r'(pad "10"[^\n]*)"A3_PIN"', r'\g<1>"A2_PIN"')
+    return in_part(text, "U2", r'(pad "14"[^\n]*)"A\?"', r'\g<1>"A3_PIN"')
 
 
 DAMAGES: list[tuple[str, Edit, str, set[str]]] = [
-    (HEADER, replaced("A0, A1", "A1, A0"), "wiring", {"pins"}),
+    (HEADER, replaced("A2, A3", "A3, A2"), "wiring", {"pins"}),
     (HEADER, replaced("SELECT_PINS 2, 3", "SELECT_PINS 3, 2"), "wiring", {"pins"}),
     (FLANGE, pads_exchanged, "wiring", {"pins"}),
     (LIST, replaced("flange,J4.3,", "flange,J4.9,"), "wiring", {"ends", "pins", "note", "diagram"}),

@@ -37,8 +37,9 @@ def print_references(page: Page) -> tuple[PlacedComponent, ...]:
         return _among_cells(page, _edges(cells.at, cells.pitch_mm), cells.pitch_mm)
     for part in components:
         if part.kind not in ("fiducial", "test point"):  # a test point has the name of its net
-            places = _round(page, part.ref, courtyard(part), _height_mm(page, part))
-            page.require(repr(part.ref), places, part.side, _FREE_MM)
+            height_mm = _height_mm(page, part)
+            places = _round(page, part.ref, courtyard(part), height_mm)
+            page.require(repr(part.ref), places, part.side, _FREE_MM if height_mm else 0.0)
     return components
 
 
@@ -52,13 +53,17 @@ def _height_mm(page: Page, part: PlacedComponent) -> float:
 
 def _round(page: Page, ref: str, yard: Box, height_mm: float) -> list[Text]:
     """Places for a reference round its part: at its ends, then above, below and upright; then the
-    same farther away, and all of them in the smallest letters."""
+    same farther away, and all of them in the smallest letters. In a dense row upright first, and
+    nearer."""
     turns = (
         *((way, False) for way in (LEFT, RIGHT, UP, DOWN)),
         *((way, True) for way in (UP, DOWN, LEFT, RIGHT)),
     )
+    if not height_mm:  # level it would take its neighbours' places
+        turns = (*turns[4:], *turns[:4])
+    away = _AWAY_MM if height_mm else _AWAY_MM / 2
     return [
-        page.beside(ref, *_rectangle(yard), way, _AWAY_MM + farther, upright, high)
+        page.beside(ref, *_rectangle(yard), way, away + farther, upright, high)
         for high in (height_mm, 0.0)
         for farther in (0.0, 1.0, 2.0, 3.0)
         for way, upright in turns

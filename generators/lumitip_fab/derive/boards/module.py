@@ -4,10 +4,13 @@
 ╭───────────────────╮
 │  J6 USB           │   the module's antenna is at the edge
 │  J7 SWD   C5 U3 C6│   5V ─ U3 ─ 3V3
+│  Z                │
 │▒▒┌──────────────┐C10   of VBUS
 │▒▒│      U2      │C7    of VDD
 │▒▒└──────────────┘C9
-│           J5      │Y1 C8
+│  R R R R R C C C C│Y1   see `lumitip_fab.derive.boards.module_protection`
+│       J5          │C8
+│  Z Z Z Z Z Z Z Z Z│
 │  J4               │   wires to the receiver, and (J5) to the emitter
 ╰───────────────────╯
 ```
@@ -22,22 +25,27 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors
 from lumitip_fab.derive.boards.breakout import switching
 from lumitip_fab.derive.boards.connectors import CONTROLLER
+from lumitip_fab.derive.boards.module_protection import module_protection
 from lumitip_fab.derive.boards.packages import capacitor
 from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.wiring import protection
 from lumitip_fab.derive.wiring.wiring import Muxing, larger_multiplexers
 from lumitip_fab.design import Box, Component, Point, footprints
 from lumitip_fab.design.components import chip, leaded, mounted, wires
 
 WING_MM = 12.6
 """Width beyond the board without a module; the bolts of the published flange limit it."""
+MODULE_Y_MM = 1.0
+"""Middle of the module: below it is room for resistors and capacitors."""
 TURN_DEG = 90.0  # the antenna, at the top of the module's own frame, to the left
 MOST_WIRES = 9
 """In the row to the receiver, between the board's round corner and the header."""
-J5_END_MM = -15.63
+J4_AT: Point = (-20.1, -20.85)
+J5_END_MM, J5_Y_MM = -15.63, -12.85
 """Last pad of the row to the emitter: beyond it the floor holds a bolt of the flange."""
 J7_AT: Point = (-20.52, 15.5)
 """Between a panel's tab at the board's edge and a bolt of the flange."""
-FIDUCIALS_AT: tuple[Point, ...] = ((-25.6, 8.4), (13.0, -15.5), (-25.6, -8.4))
+FIDUCIALS_AT: tuple[Point, ...] = ((-25.6, 8.4), (13.0, -15.5), (-26.3, -10.9))
 _NAMED = {
     "GND": "GND",
     "VDD": CONTROLLER,
@@ -82,15 +90,16 @@ def derive_module(
         return None
     _refuse(config, muxing, faults)
     left = box.x_min_mm - WING_MM
-    at = left + module.body_mm[1] / 2, 0.0
+    at = left + module.body_mm[1] / 2, MODULE_Y_MM
     receiver, lit = connectors.receiver_signals(config, muxing), connectors.emitter_signals(config)
     pitch = connectors.WIDE[0]
     components = (
+        *module_protection(config, module, muxing, (receiver, J4_AT)),
         _module(config, module, muxing, at),
         *_beside(config),
         *_supply(config, supplies),
-        wires("J4", receiver, connectors.NARROW, (left + 7.9, -20.8)),
-        wires("J5", lit, connectors.WIDE, (J5_END_MM - (len(lit) - 1) / 2 * pitch, -14.0)),
+        wires("J4", receiver, connectors.NARROW, J4_AT),
+        wires("J5", lit, connectors.WIDE, (J5_END_MM - (len(lit) - 1) / 2 * pitch, J5_Y_MM)),
         wires("J6", ("VUSB", "D-", "D+", "GND"), connectors.WIDE, (-21.0, 20.25)),
         wires("J7", (CONTROLLER, "DIO", "CLK", "RST", "GND"), connectors.WIDE, J7_AT),
     )
@@ -110,9 +119,11 @@ def _module(config: Input, module: Module, muxing: Muxing, at: Point) -> Compone
     """The module; a pin of the sketch names its pad, any other pad is called by its port."""
     pins = {port: pin for pin, port in module.ports.items()}
     nets = _NAMED | dict(zip(module.crystal, ("XL1", "XL2"), strict=True))
-    nets |= {module.ports[pin]: pin for pin in muxing.adc_pins}
-    nets |= {module.ports[pin]: f"S{i}" for i, pin in enumerate(muxing.select_pins)}
-    nets |= {module.ports[pin]: net for pin, net in switching(config).items()}
+    used = {pin: pin for pin in muxing.adc_pins}
+    used |= {pin: f"S{i}" for i, pin in enumerate(muxing.select_pins)} | switching(config)
+    nets |= {
+        module.ports[pin]: protection.pin_net(config, muxing, net) for pin, net in used.items()
+    }
     return mounted(
         "U2",
         "module",
@@ -132,9 +143,9 @@ def _supply(config: Input, supplies: Supplies) -> tuple[Component, ...]:
     entry = config.parts.module.regulator
     leads = {"IN": fed, "OUT": CONTROLLER, "GND": "GND"}
     return (
-        leaded("U3", "regulator", p.regulator, entry, leads, (-17.5, 9.2), 0.0),
-        capacitor(config, "C5", p.supply_capacitor, (fed, "GND"), (-14.4, 10.2), 0.0),
-        capacitor(config, "C6", p.supply_capacitor, (CONTROLLER, "GND"), (-14.4, 7.8), 0.0),
+        leaded("U3", "regulator", p.regulator, entry, leads, (-17.5, 9.8), 0.0),
+        capacitor(config, "C5", p.supply_capacitor, (fed, "GND"), (-14.4, 10.8), 0.0),
+        capacitor(config, "C6", p.supply_capacitor, (CONTROLLER, "GND"), (-14.4, 8.6), 0.0),
     )
 
 
@@ -147,7 +158,7 @@ def _beside(config: Input) -> tuple[Component, ...]:
         capacitor(config, "C10", p.supply_capacitor, ("VUSB", "GND"), (-11.2, 10.2), 90.0),
         chip("Y1", "crystal", value, entry, ("XL1", "XL2"), (-11.3, -7.2), 90.0),
         capacitor(config, "C8", p.crystal_capacitor, ("XL1", "GND"), (-11.3, -11.4), 270.0),
-        capacitor(config, "C9", p.crystal_capacitor, ("XL2", "GND"), (-11.4, -3.2), 270.0),
+        capacitor(config, "C9", p.crystal_capacitor, ("XL2", "GND"), (-11.4, -3.4), 270.0),
     )
 
 

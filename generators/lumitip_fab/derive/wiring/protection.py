@@ -43,10 +43,14 @@ MOST_SHARE = 0.5
 
 
 def protecting_board(config: Input) -> str | None:
-    """Name of the board that has the parts, the breakout; none where the pins are joined to the
-    wires."""
-    plugged = config.parameters.breakout.enabled and config.parts.controller.board.plug
-    return "breakout" if plugged and config.parts.protection.diode else None
+    """Name of the board that has the parts: the breakout, or the flange's with a module; none where
+    the pins are joined to the wires."""
+    p, controller = config.parameters, config.parts.controller.board
+    if config.parts.protection.diode is None:
+        return None
+    if controller.module is not None:
+        return "flange" if p.flange.enabled else None
+    return "breakout" if p.breakout.enabled and controller.plug else None
 
 
 def lines(config: Input, muxing: Muxing) -> tuple[str, ...]:
@@ -67,11 +71,11 @@ def clamped(config: Input, muxing: Muxing) -> tuple[str, ...]:
     diode = config.parts.protection.diode
     if diode is None:
         return ()
-    supplies = {
-        CONTROLLER: config.parts.controller.board.supply_v,
-        REGULATED: config.parts.flange.regulator.output_v,
-    }
-    fitting = (net for net, volts in supplies.items() if _holds(diode, volts))
+    controller = config.parts.controller.board
+    on_wires = {CONTROLLER: controller.supply_v}
+    if controller.module is None:
+        on_wires[REGULATED] = config.parts.flange.regulator.output_v
+    fitting = (net for net, volts in on_wires.items() if _holds(diode, volts))
     return (*lines(config, muxing), *fitting)
 
 
@@ -87,7 +91,6 @@ def derive_protection(config: Input, muxing: Muxing, faults: Diagnostics) -> Pro
     """
     p, parts, board = config.parameters, config.parts.protection, protecting_board(config)
     diode, controller = parts.diode, config.parts.controller.board
-    faults.unless(diode is None or controller.module is None, "protection_on_module")
     if board is None or diode is None:
         return None
     peak_a = PEAK_A_PER_KV * DISCHARGE_KV

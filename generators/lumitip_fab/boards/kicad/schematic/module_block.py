@@ -1,5 +1,6 @@
 """A module with its capacitors and its crystal."""
 
+import re
 from collections.abc import Sequence
 
 from lumitip_fab.boards.kicad.schematic import shapes
@@ -15,8 +16,8 @@ _CAPACITOR_ROWS = 9
 """Rows that a capacitor takes below its supply's."""
 _CRYSTAL_ROWS, _ABOVE_ROWS = 4, 3
 """From wire to wire of the crystal, and above them for the name of the upper one."""
-_SKETCH = ("A", "S")
-"""First letters of the nets that the controller's program reads and writes."""
+_SKETCH = re.compile(r"[AS]\d+(_PIN)?")
+"""Nets that the controller's program reads and writes."""
 
 
 def draw_module(draft: Draft, group: Sequence[Component]) -> None:
@@ -76,7 +77,7 @@ def _right(module: Component, wired: set[str]) -> Rows:
 
 
 def _of_sketch(net: str) -> bool:
-    return net[0] in _SKETCH and net[1:].isdigit()
+    return _SKETCH.fullmatch(net) is not None
 
 
 def _fed(draft: Draft, module: Component) -> list[str]:
