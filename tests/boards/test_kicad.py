@@ -17,6 +17,7 @@ from programs import needs
 
 Boards = Callable[[str], Path]
 SLOW = ("fingertip", "published", "asymmetric", "dense", "mux16", "flex")
+NO_FLANGE = (("franka_hand", "flange"), ("wsg50", "flange"))
 OTHERS = ("by_goals", "franka_hand", "robotiq_2f140", "wsg50")
 BOARDS = ("emitter", "receiver", "breakout", "flange")
 AUXILIARY_BOARDS = BOARDS[2:]
@@ -29,7 +30,12 @@ EVERY = (
 ALL = (
     *EVERY,
     *(pytest.param("integrated", name, marks=pytest.mark.slow) for name in BOARDS[:2]),
-    *(pytest.param(preset, name, marks=pytest.mark.slow) for preset in OTHERS for name in BOARDS),
+    *(
+        pytest.param(preset, name, marks=pytest.mark.slow)
+        for preset in OTHERS
+        for name in BOARDS
+        if (preset, name) not in NO_FLANGE
+    ),
 )
 """Every board of every preset."""
 ALLOWED: dict[str, str] = {}  # names of warnings, each with the reason why it may stand
