@@ -27,9 +27,9 @@ WIRE_UH_PER_M = 1.0
 CAPACITANCE_TOLERANCE = 0.2
 MOST_COUNTS = 0.5
 """Dip of the supply, in counts of 255."""
-REACH_MM = 19.0
-"""From the capacitor's supply pad to that of the wire, at most: 19 nH of track, a tenth of the
-190 nH that the wire has."""
+REACH_MM = 20.0
+"""From the capacitor's supply pad to that of the wire, at most: 20 nH of track, where the wire has
+190 nH."""
 BESIDE_WIRES_MM, MARK_MM = 1.1, 1.6
 """To the row of wire pads, at whose end the mark of the first one stands, and its height."""
 APART_MM = 0.6
