@@ -111,7 +111,7 @@ REFUSED = [
     ),
     ('[receiver]\nbulk_capacitor = "22uF 0805"\n', "stack.silicone_mm", "receiver.bulk_capacitor"),
     (
-        '[receiver]\nbulk_capacitor = "10uF 0603 10V"\n[grid]\ncolumns = [3, 2, 3, 2, 3]\n',
+        '[receiver]\nbulk_capacitor = "10uF 0603 10V"\n[grid]\ncolumns = [3, 2, 3, 2]\n',
         "receiver.bulk_capacitor",
         "leave no room",
     ),
@@ -128,7 +128,7 @@ def test_a_capacitor_that_cannot_be_is_refused(
 
 
 def test_an_automatic_capacitor_without_room_is_left_out(design_dir: Path, tmp_path: Path) -> None:
-    design = _mine(design_dir, tmp_path, "[grid]\ncolumns = [3, 2, 3, 2, 3]\n")
+    design = _mine(design_dir, tmp_path, "[grid]\ncolumns = [3, 2, 3, 2]\n")
     choice = next(c for c in design.choices if c.field == "receiver.bulk_capacitor")
     assert (choice.value, design.electrical.bulk) == ("'none'", None)
     assert "leave no room" in choice.reason
