@@ -53,6 +53,7 @@ ROUNDED_MM = 0.001
 MISSING_SHARE = {
     "asymmetric": 0.02,
     "dense": 0.04,
+    "fingertip": 0.02,
     "flex": 0.02,
     "integrated": 0.045,
     "mux16": 0.02,
