@@ -45,7 +45,7 @@ FINER = {
     "drill_out_of_range": "via_drill_mm",
     "via_diameter": "via_mm",
 }
-"""What copper finer than KiCad's defaults shows of it, and the design's own least figure."""
+"""Faults that copper finer than KiCad's defaults has by them, and the design's least figure."""
 ROUNDED_MM = 0.001
 # Share of KiCad's fill that ours may leave out. Ours drops pieces that lead from one pad to
 # nowhere, of which crowded boards have many: 2.3 % of the dense receiver, 3.6 % of the flange with
@@ -95,10 +95,10 @@ def test_kicad_finds_no_fault(
         report,
         board,
     )
-    told = json.loads(report.read_text())
-    assert told["unconnected_items"] == []
-    assert told["schematic_parity"] == []
-    assert {v["type"] for v in told["violations"]} <= set(ALLOWED), told["violations"][:3]
+    report_of = json.loads(report.read_text())
+    assert report_of["unconnected_items"] == []
+    assert report_of["schematic_parity"] == []
+    assert {v["type"] for v in report_of["violations"]} <= set(ALLOWED), report_of["violations"][:3]
 
 
 @pytest.mark.parametrize(("preset", "name"), ALL)
@@ -113,10 +113,10 @@ def test_kicad_finds_no_error_by_its_default_rules(
         *("kicad-cli", "pcb", "drc", "--severity-error", "--format", "json"),
         *("-o", report, board),
     )
-    told = json.loads(report.read_text())
-    assert told["unconnected_items"] == []
+    report_of = json.loads(report.read_text())
+    assert report_of["unconnected_items"] == []
     rules = read_design(boards(preset) / "design.json").rules
-    for violation in told["violations"]:
+    for violation in report_of["violations"]:
         assert violation["type"] in FINER, violation
         found = re.search(r"([\d.]+) mm; actual ([\d.]+) mm", violation["description"])
         assert found, violation
@@ -208,8 +208,8 @@ def test_kicad_finds_no_fault_in_an_auxiliary_boards_schematic(
     sheet = boards(preset) / "boards" / name / f"{name}.kicad_sch"
     report = tmp_path / "erc.json"
     kicad("kicad-cli", "sch", "erc", "--severity-all", "--format", "json", "-o", report, sheet)
-    told = json.loads(report.read_text())
-    assert [v for page in told["sheets"] for v in page["violations"]] == []
+    report_of = json.loads(report.read_text())
+    assert [v for page in report_of["sheets"] for v in page["violations"]] == []
 
 
 def test_a_broken_rule_is_found(damaged_boards: Path, kicad: Callable[..., str]) -> None:
@@ -229,6 +229,6 @@ def test_net_classes_reach_kicad(boards: Boards, kicad: Callable[..., str]) -> N
         "print({str(n): net.GetNetClassName() for n, net in nets.items()}, flush=True); "
         "os._exit(0)"
     )
-    told = kicad(SYSTEM_PYTHON, "-c", code, board)
-    assert "'3V3': 'supply'" in told
-    assert "'Q1': 'signal'" in told
+    printed = kicad(SYSTEM_PYTHON, "-c", code, board)
+    assert "'3V3': 'supply'" in printed
+    assert "'Q1': 'signal'" in printed

@@ -95,10 +95,10 @@ def test_another_pressure_is_tried_where_nets_find_no_room(
 ) -> None:
     placement, routing = crossing
     none, usual = router.Pressure(1.0, 0.0), router.TRIES[0]  # nets never become dear
-    monkeypatch.setattr(router, "TRIES", (none,))
+    monkeypatch.setattr(router, "ATTEMPTS", ((none, False),))
     with pytest.raises(BuildError, match="still share room"):
         route(placement)
-    monkeypatch.setattr(router, "TRIES", (none, usual))
+    monkeypatch.setattr(router, "ATTEMPTS", ((none, False), (usual, False)))
     second = route(placement)
     assert (second.tracks, second.vias) == (routing.tracks, routing.vias)
     assert second.iterations > routing.iterations
@@ -161,7 +161,7 @@ def test_vias_beside_capacitors_are_given_up_where_they_have_no_room(
     (pad,) = bypass_pads(placement)
     assert via.net == "GND"
     assert pad.area.distance(shapely.Point(via.x_mm, via.y_mm)) <= BYPASS_MM
-    monkeypatch.setattr(router, "TRIES_WITH_VIAS", 0)
+    monkeypatch.setattr(router, "ATTEMPTS", ((router.TRIES[0], False),))
     assert route(placement).vias == ()
 
 

@@ -1,4 +1,4 @@
-"""What the manual's steps say: needs, signs, order, names of things, tools and parts."""
+"""The words of the manual's steps: needs, signs, order, names of things, tools and parts."""
 
 import re
 from collections.abc import Callable

@@ -89,7 +89,7 @@ class Led(Polar):
 class Indicator(Chip):
     """A light-emitting diode to look at: terminal 1 is its cathode."""
 
-    colour: Literal["green", "yellow", "orange", "red", "blue", "white"]
+    colour: Literal["green", "yellow-green", "yellow", "orange", "red", "blue", "white"]
     """Colour of its light."""
     forward_v: Voltages
     """Least and greatest forward voltage at the working current."""

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import board_copper
+from lumitip_fab.checks import board_copper, board_noise
 from lumitip_fab.checks.board_circuit import (
     measure_channels,
     measure_contact_map,
@@ -243,10 +243,10 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     board_copper.measure_nets,
     board_copper.measure_joined,
     board_copper.measure_spokes,
-    board_copper.measure_bypass_vias,
+    board_noise.measure_bypass_vias,
     board_copper.measure_supplies,
     board_copper.measure_hot_loop,
-    board_copper.measure_crystal,
+    board_noise.measure_crystal,
     board_copper.measure_keep_outs,
     measure_prints,
     measure_labels,

@@ -20,12 +20,8 @@ GROUND_SHARE = 80.0  # of the loop, in percent
 ANTENNA_EDGE_MM = 0.5
 SUPPLY_EDGE_MM = 1.0
 """Twice what any copper keeps: the edge is where screws, fingers and burrs are."""
-CRYSTAL_MM = 3.0
-"""From the crystal's copper to that which a regulator switches: about twice the board's thickness,
-assumed."""
 LEAST_SPOKES = 2
 """Default of `min_resolved_spokes` of KiCad 6 to 10."""
-VIA_MM = 1.0  # from the edge of a capacitor's ground pad to the middle of a via, at most
 _BESIDE_MM = 0.1  # from the pad, inside its thermal gap
 _SOLID = 0.6  # of a pad's area, which the pour covers where it joins the pad all round
 _ROUND_MM = 0.0006  # what chords of round copper take away, and six digits in files
@@ -95,23 +91,6 @@ def measure_supplies(read: ReadBoard) -> Iterator[Measurement]:
     yield read.figure("supply_width", narrowest, read.design.rules.supply_track_mm, math.inf)
     near = min((c.area.distance(read.outline.boundary) for c in tracks), default=math.nan)
     yield read.figure("supply_edge", near, SUPPLY_EDGE_MM, math.inf)
-
-
-def measure_crystal(read: ReadBoard) -> Iterator[Measurement]:
-    """How far a crystal is from what a regulator switches, copper to copper."""
-    parts = [(d.kind, {net for _, net in d.nets}) for d in read.components]
-    quiet, coil, smoothed = (
-        set().union(*(nets for kind, nets in parts if kind == wanted and among <= nets))
-        for wanted, among in (("crystal", set()), ("inductor", set()), ("capacitor", {"GND"}))
-    )
-    if not quiet:
-        return
-    switched = coil - smoothed
-    areas = [
-        shapely.union_all([c.area for c in read.board.copper() if c.net in of])
-        for of in (quiet, switched)
-    ]
-    yield read.figure("crystal", areas[0].distance(areas[1]), CRYSTAL_MM, math.inf)
 
 
 def _gap(read: ReadBoard, least_mm: float) -> Measurement:
@@ -191,20 +170,6 @@ def _spokes(fill: BaseGeometry, pad: Copper) -> int:
         if start == end and len(touching) > 1:
             return len(pieces) - 1
     return len(pieces)
-
-
-def measure_bypass_vias(read: ReadBoard) -> Iterator[Measurement]:
-    """From each soldered ground pad of a capacitor to the nearest via that its copper leads to."""
-    vias = [(c, shapely.centroid(c.area)) for c in read.board.loose if c.kind == "via"]
-    away: dict[str, float] = {}
-    for part, terminal, pad in lands(read.board):
-        if part.ref.startswith("C") and terminal.net == "GND" and not terminal.drill_mm:
-            group = read.clusters.of(pad)
-            near = [pad.area.distance(at) for via, at in vias if read.clusters.of(via) == group]
-            away[f"{part.ref}.{terminal.number}"] = min(near, default=math.inf)
-    if away:
-        worst = max(away, key=lambda name: away[name])
-        yield read.figure("bypass_via", away[worst], 0, VIA_MM, note=f"to a via, at {worst}")
 
 
 def measure_hot_loop(read: ReadBoard) -> Iterator[Measurement]:

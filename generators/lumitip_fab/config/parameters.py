@@ -21,7 +21,7 @@ from lumitip_fab.config import sections
 from lumitip_fab.config.mask import Mask
 
 REVISION = r"^[A-Za-z0-9.\-]{1,8}$"
-DATE = r"^(\d{4}-(0[1-9]|1[0-2])-(0[1-9]|[12]\d|3[01]))?$"
+DATE = r"^([0-9]{4}-(0[1-9]|1[0-2])-(0[1-9]|[12][0-9]|3[01]))?$"
 Gap = Annotated[float, Field(ge=0, le=20)]
 Column = Annotated[int, Field(ge=1, le=256)]
 

@@ -113,9 +113,9 @@ class Component:
     """Net of each connected pad: `(("1", "GND"), ("2", "Q1"))`."""
     manufacturer: str = ""
     lcsc: str = ""
-    datasheet: str = ""
-    """Address of the maker's data sheet."""
     """Number at the distributor LCSC; empty where it is not known."""
+    datasheet: str = ""
+    """Address of the maker's data sheet; empty where it is not known."""
     pins: tuple[str, ...] = ()
     """Name of each pad, in the order of the pads; empty where a part has no names."""
 

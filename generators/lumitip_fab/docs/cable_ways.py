@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from lumitip_fab.design import Cable, Design
-from lumitip_fab.design.cabling import Terminal
+from lumitip_fab.design import Design
+from lumitip_fab.design.cabling import Terminal, front_headers
 from lumitip_fab.text import passage
 
 
@@ -12,16 +12,16 @@ def cable_ways(design: Design) -> str:
     loops = {loop.cable: f"{loop.length_mm:.0f} mm" for loop in design.cabling.loops}
     rows = [
         f"| {cable.name}: {cable.start.board} to {cable.end.board} "
-        f"| {', '.join(_held(design, cable, cable.start)) or 'nothing'} "
+        f"| {', '.join(_held(design, cable.start)) or 'nothing'} "
         f"| {loops.get(cable.name, 'none of it')} "
-        f"| {', '.join(_held(design, cable, cable.end)) or 'nothing'} |"
+        f"| {', '.join(_held(design, cable.end)) or 'nothing'} |"
         for cable in design.cabling.cables
     ]
     return passage("docs/chapters.md", "ways").format(rows="\n".join(rows))
 
 
-def _held(design: Design, cable: Cable, end: Terminal) -> Iterator[str]:
-    """What holds an end, from its pads on."""
+def _held(design: Design, end: Terminal) -> Iterator[str]:
+    """Threads, ties and sockets that hold an end, from its pads on."""
     ties = {f.name: f.ties for f in design.fingers}
     ties |= {board.name: board.ties for board in design.auxiliary_boards}
     for tie in ties.get(end.board, ()):
@@ -37,11 +37,12 @@ def _held(design: Design, cable: Cable, end: Terminal) -> Iterator[str]:
         yield from (f"tie at the holder's lug {name}" for name in named if name == end.connector)
     if end.board == "supply":
         yield "its terminals"
-    elif end.connector in _headers(design, cable):
+    elif (end.board, end.connector) in _headers(design):
         yield f"socket at {end.connector}"
 
 
-def _headers(design: Design, cable: Cable) -> set[str]:
-    """Headers at the end of a cable that it is plugged into."""
-    boards = (board for board in design.auxiliary_boards if board.name == cable.end.board)
-    return {part.ref for board in boards for part in board.components if part.kind == "header"}
+def _headers(design: Design) -> set[tuple[str, str]]:
+    """Board and reference of each header that a socket goes onto."""
+    return {
+        (board.name, part.ref) for board in design.auxiliary_boards for part in front_headers(board)
+    }

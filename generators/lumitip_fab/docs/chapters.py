@@ -114,12 +114,13 @@ def _boards(design: Design, files: Files) -> str:
         for name in shown
         if files.like(f"boards/{name}/{name}_{side}.png")
     ]
+    reflowed = _reflowed(design)
     return _text(
         "boards",
         names=listed(list(names)),
         panels=_panels(design),
         solder=design.heat_steps["solder"],
-        reflowed=(reflowed := _reflowed(design)),
+        reflowed=reflowed,
         hot_air=", hot air, flux" * bool(reflowed),
         breaking=", pliers, small files, safety glasses" * bool(design.panels),
         polarity=polarity_test(design.packages, design.fingers),
@@ -178,7 +179,7 @@ def _wired(design: Design, files: Files) -> str:
 
 
 def _amounts(design: Design, files: Files) -> str:
-    """What to weigh for each finger."""
+    """Amounts to weigh for each finger."""
     mixes = {f.name: silicone_mix(volume_ml(f, files), design.mould) for f in design.fingers}
     return amounts_of_both(design.mould, mixes)
 
@@ -232,7 +233,7 @@ def _run(design: Design) -> str:
 
 
 def _kept(design: Design) -> str:
-    """What wears, and how a worn skin comes off."""
+    """Parts that wear, and how a worn skin comes off."""
     film = design.mask.route == "film"
     keys = len(design.keys)
     return _text(

@@ -110,9 +110,13 @@ def _from_robot(design: Design, pads: list[str]) -> str:
 
 
 def _contacts(design: Design) -> str:
-    """What each contact of a socket on the flange's headers carries, and its wire."""
-    counted = "" if plugs(design) else _text("counted")
-    return _text("sockets", counted=counted, rows="\n".join(_contact_rows(design)))
+    """The table of the headers' contacts, of the signal that each carries, and of its wire."""
+    return _text(
+        "sockets",
+        counted="" if plugs(design) else _text("counted"),
+        wired=_text("wired") if plugs(design) else "",
+        rows="\n".join(_contact_rows(design)),
+    )
 
 
 def _contact_rows(design: Design) -> Iterator[str]:

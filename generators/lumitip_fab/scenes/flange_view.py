@@ -114,7 +114,7 @@ def _printed(flange: Flange, printed: Mapping[str, Mesh], part: str) -> Iterator
 
 
 def _board(flange: Flange, auxiliary: AuxiliaryBoard, stack: Stack, eye: View) -> Iterator[_Drawn]:
-    """What is on its back, the board, and what is on its front, the farthest first."""
+    """Parts on its back, the board, and parts on its front, the farthest first."""
     placed = frames.auxiliary_to_flange(flange)
     parts = [part for part in auxiliary.components if part.footprint.height_mm > 0]
     parts.sort(key=lambda part: float(eye.seen(np.array([part.x_mm, part.y_mm, 0.0]))[2]))

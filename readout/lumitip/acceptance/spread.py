@@ -18,8 +18,8 @@ LED = 0.1
 PLACEMENT_MM = 0.05
 """That of a part beside its land, in x and in y."""
 BOARD_MM = 0.125
-"""That of a board beside its place: play of the published backing's pins, of which every place is
-as likely, and accuracy of the print."""
+"""That of a board beside its place: uniform within the play of the published backing's pins, and
+accuracy of the print."""
 DRIFT = 0.011
 """That of a cell's gain between the empty grasp and the gauge: half of that since a tare."""
 

@@ -22,7 +22,7 @@ def beside(pads: Iterable[PlacedPad], fixed: Obstacles, owner: NDArray[np.int16]
         owner: its map.
     """
     classes = fixed.rules.classes
-    wide = min(range(len(classes)), key=lambda c: classes[c].via_mm)
+    smallest = min(range(len(classes)), key=lambda c: classes[c].via_mm)
     neck = np.zeros((fixed.grid.height, fixed.grid.width), dtype=np.uint8)
     vias = []
     for pad in pads:
@@ -31,7 +31,7 @@ def beside(pads: Iterable[PlacedPad], fixed: Obstacles, owner: NDArray[np.int16]
         dy = np.maximum(np.abs(y) - pad.pad.height_mm / 2, 0)
         away = np.hypot(dx, dy)
         number = fixed.number[pad.net]
-        free = (away <= BYPASS_MM) & np.isin(owner[wide, 2][where], (0, number))
+        free = (away <= BYPASS_MM) & np.isin(owner[smallest, 2][where], (0, number))
         rows, columns = np.nonzero(free)
         if not rows.size:
             continue
@@ -39,7 +39,7 @@ def beside(pads: Iterable[PlacedPad], fixed: Obstacles, owner: NDArray[np.int16]
         aside = np.minimum(np.abs(x), np.abs(y))[rows, columns] > OFF_AXIS_MM
         name = f"{pad.net} via of {pad.component.ref}.{pad.pad.number}"
         cost = (1 + away[rows, columns]) * np.where(aside, ASIDE, 1.0)
-        vias.append(Wanted(name, number, wide, (), neck, nodes.astype(np.int32), cost.round(6)))
+        vias.append(Wanted(name, number, smallest, (), neck, nodes.astype(np.int32), cost.round(6)))
     return vias
 
 
@@ -51,7 +51,7 @@ def cheapest(
     Args:
         net: one via.
         taken: `(H, W)`: number of nets too near for it.
-        history: `(2, H, W)`: how often a node was fought for.
+        history: `(2, H, W)`: how often a node was fought for; while polishing, how near others are.
         price: of each net in the way.
     """
     fought = history.reshape(2, -1)[:, net.places].sum(axis=0)

@@ -94,7 +94,9 @@ these at cheap vias, and were routed at other growths; one of 55 cells that bend
 the bend, was routed only with its nets in the other order. Vias are dear at first, with a slow
 history, so that nets have time to find a way without; the few that still fight late get them
 cheaper with each round."""
-TRIES_WITH_VIAS = 4  # beside capacitors: a crowded board has no room for them all
+ATTEMPTS = (*((pressure, True) for pressure in TRIES[:2]), *((p, False) for p in TRIES[1:]))
+"""Pressures, and whether with the vias beside capacitors: a crowded board has no room for all of
+them."""
 LATE = 13
 FIRST_PRICE = 0.6  # of a net in the way, in the first round
 TOP_PRICE = 30.0
@@ -167,21 +169,22 @@ def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int
 def negotiate_until_free(state: State, nets: list[Wanted]) -> tuple[int, dict[str, Ints]]:
     """`negotiate` under one pressure after the other, until no net is in the way of another.
 
-    The last tries leave out the vias beside capacitors.
+    The later tries leave out the vias beside capacitors.
 
     Returns:
         As `negotiate`: the rounds of all tries, and the fight of the try that came nearest.
     """
     rounds, nearest = 0, None
-    for number, pressure in enumerate(TRIES):
+    for pressure, with_vias in ATTEMPTS:
         state.clear()
-        some = nets if number < TRIES_WITH_VIAS else [n for n in nets if not n.places.size]
+        some = nets if with_vias else [net for net in nets if not net.places.size]
         ordered = some[::-1] if pressure.backwards else some
         turns, fought = negotiate(state, ordered, pressure)
         rounds += turns
         if not fought:
             return rounds, {}
-        nearest = min(nearest or fought, fought, key=len)
+        if not with_vias:  # its nets are those that must have room
+            nearest = min(nearest or fought, fought, key=len)
     return rounds, nearest or {}
 
 

@@ -36,6 +36,8 @@ RESISTOR_AT: Point = (-6.4, 10.5)
 LED_AT: Point = (-6.4, 12.3)
 NOTE = Note("PWR", (-6.4, 14.0), 1.0, 0.0)
 """Beside the flange's LED, on the silkscreen."""
+LEAST_BREAKOUT_MM = (45.72, 38.1)
+"""Size of a breakout that has room for the LED, its legend and marks for cameras."""
 LEGEND, BESIDE_X_MM = "PWR", (-4.6, 2.7, 6.1)
 """On the breakout, in the row of the wires between both cables: resistor, LED and legend."""
 
@@ -176,7 +178,15 @@ def _figures(lit: _Lit) -> Indicator:
 
 
 def _problems(config: Input, lit: _Lit, figures: Indicator) -> Iterator[str]:
-    part = lit.part
+    part, board_mm = lit.part, config.parameters.breakout.board_mm
+    if lit.board == "breakout" and any(
+        have < least for have, least in zip(board_mm, LEAST_BREAKOUT_MM, strict=True)
+    ):
+        yield (
+            f"; it has room between the wires on a breakout of {LEAST_BREAKOUT_MM[0]:g} x "
+            f"{LEAST_BREAKOUT_MM[1]:g} mm or more. Increase breakout.board_mm, or choose "
+            '"none".'
+        )
     if figures.low_ma < part.visible_ma:
         yield (
             f", which needs {part.visible_ma:g} mA to be seen and up to {part.forward_v[1]:g} V; "

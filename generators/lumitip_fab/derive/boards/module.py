@@ -25,7 +25,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors
 from lumitip_fab.derive.boards.breakout import switching
 from lumitip_fab.derive.boards.connectors import CONTROLLER
-from lumitip_fab.derive.boards.module_protection import module_protection
+from lumitip_fab.derive.boards.module_protection import module_protection, refuse_row
 from lumitip_fab.derive.boards.packages import capacitor
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring import protection
@@ -89,6 +89,7 @@ def derive_module(
     if module is None:
         return None
     _refuse(config, muxing, faults)
+    refuse_row(config, muxing, faults)
     left = box.x_min_mm - WING_MM
     at = left + module.body_mm[1] / 2, MODULE_Y_MM
     receiver, lit = connectors.receiver_signals(config, muxing), connectors.emitter_signals(config)

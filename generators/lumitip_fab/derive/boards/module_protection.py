@@ -19,6 +19,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors
 from lumitip_fab.derive.boards.connectors import CONTROLLER, SWITCH
 from lumitip_fab.derive.boards.protection import esd_diode, pin_capacitor, series_resistor
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring import protection
 from lumitip_fab.derive.wiring.wiring import Muxing
 from lumitip_fab.design import Component, Point
@@ -35,6 +36,7 @@ LAST_X_MM, ROW_Y_MM, PITCH_MM = -12.95, -6.3, 1.2
 """The last one, before the crystal; height, and part to part."""
 MOST_IN_ROW = 11
 """With fewer parts the place before the crystal stays free."""
+PART_GAP_MM = 0.2
 SWITCH_AT: Point = (-11.7, -0.6)
 FIRST_RESISTOR, FIRST_CAPACITOR = 5, 11
 """Numbers after those of the flange's and the module's own parts."""
@@ -61,6 +63,26 @@ def module_protection(
     return (
         *(esd_diode(config, n, net, *place) for n, (net, place) in enumerate(diodes, start=1)),
         *_at_pins(config, module, muxing),
+    )
+
+
+def refuse_row(config: Input, muxing: Muxing, faults: Diagnostics) -> None:
+    """Refuse more or wider resistors and capacitors than have room below the module."""
+    if protection.protecting_board(config) is None:
+        return
+    parts = config.parts.protection
+    capacitor = parts.capacitor
+    wide_mm = parts.resistor.over_pads_mm[1]
+    wide_mm = max(wide_mm, capacitor.over_pads_mm[1] if capacitor else 0.0)
+    each = 2 if capacitor else 1
+    faults.unless(
+        len(muxing.select_pins) + each * len(muxing.adc_pins) <= MOST_IN_ROW
+        and wide_mm + PART_GAP_MM <= PITCH_MM,
+        "module_row",
+        most=MOST_IN_ROW,
+        needed=len(muxing.select_pins) + each * len(muxing.adc_pins),
+        most_mm=PITCH_MM - PART_GAP_MM,
+        wide_mm=wide_mm,
     )
 
 
