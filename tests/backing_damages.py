@@ -66,7 +66,6 @@ EVERY_LENGTH = {
     "letter",
     "min_wall",
     "nose",
-    "notch",
     "outline",
     "pin_clearance",
     "pin_height",
