@@ -81,8 +81,8 @@ def test_supply_tracks_are_wide_away_from_narrow_pads(
     narrow = [p for c in placement.components for p in placed_pads(c) if p.pad.width_mm < 0.5]
     for t in routing.tracks:
         if t.net == "3V3" and t.width_mm < 0.5:
-            for at in (t.start, t.end):  # those beside the edge begin to be wide farther off
-                assert min(math.dist(at, (p.x_mm, p.y_mm)) for p in narrow) < 3.2
+            for at in (t.start, t.end):
+                assert min(math.dist(at, (p.x_mm, p.y_mm)) for p in narrow) < 1.5
 
 
 def test_what_cannot_be_routed_is_refused_with_nets_and_places() -> None:

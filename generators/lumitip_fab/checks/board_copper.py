@@ -18,8 +18,6 @@ HOT_LOOP_MM2 = 6.0
 HOT_TRACK_MM = 3.0
 GROUND_SHARE = 80.0  # of the loop, in percent
 ANTENNA_EDGE_MM = 0.5
-SUPPLY_EDGE_MM = 1.0
-"""Twice what any copper keeps: the edge is where screws, fingers and burrs are."""
 LEAST_SPOKES = 2
 """Default of `min_resolved_spokes` of KiCad 6 to 10."""
 _BESIDE_MM = 0.1  # from the pad, inside its thermal gap
@@ -82,7 +80,7 @@ def measure_joined(read: ReadBoard) -> Iterator[Measurement]:
 
 
 def measure_supplies(read: ReadBoard) -> Iterator[Measurement]:
-    """Tracks of supplies: wide, but where ground's pour does the work, and away from the edge."""
+    """Tracks of supplies: wide, but where ground's pour does the work; how near to the edge."""
     if read.auxiliary is None:
         return
     wide = {net for net in read.auxiliary.supplies if net != "GND"}
@@ -90,7 +88,7 @@ def measure_supplies(read: ReadBoard) -> Iterator[Measurement]:
     narrowest = min((c.width_mm for c in tracks), default=math.nan)
     yield read.figure("supply_width", narrowest, read.design.rules.supply_track_mm, math.inf)
     near = min((c.area.distance(read.outline.boundary) for c in tracks), default=math.nan)
-    yield read.figure("supply_edge", near, SUPPLY_EDGE_MM, math.inf)
+    yield read.figure("supply_edge", near, read.design.rules.edge_gap_mm - _ROUND_MM, math.inf)
 
 
 def _gap(read: ReadBoard, least_mm: float) -> Measurement:

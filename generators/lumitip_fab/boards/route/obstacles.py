@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from lumitip_fab.boards.model import SIDES, SUPPLY, Placement, fiducial_margin_mm
+from lumitip_fab.boards.model import SIDES, Placement, fiducial_margin_mm
 from lumitip_fab.boards.placed import PlacedPad
 from lumitip_fab.boards.route.kernels import BLOCKED, Bytes, Ints
 from lumitip_fab.boards.route.rules import MARGIN_MM, PAD_TO_VIA_MM, Grid, Rules, round_via_mm
@@ -13,7 +13,6 @@ from lumitip_fab.design import Box
 from lumitip_fab.errors import BuildError
 
 Reals = NDArray[np.float64]
-SUPPLY_EDGE_MM = 1.0  # copper of supplies to the edge, where screws, fingers and burrs are
 
 
 @dataclass(frozen=True)
@@ -30,11 +29,8 @@ class Obstacles:
         grid, rules = self.grid, self.rules
         owner = np.zeros((len(rules.classes), 3, grid.height, grid.width), dtype=np.int16)
         for c, kind in enumerate(rules.classes):
-            edge_mm = placement.edge_clearance_mm
-            if kind.name == SUPPLY and not placement.cells:  # a finger has no room for it
-                edge_mm = max(edge_mm, SUPPLY_EDGE_MM)
             for p, size in ((0, kind.track_mm), (1, kind.track_mm), (2, round_via_mm(kind))):
-                self._edge(placement, owner[c, p], edge_mm, size / 2)
+                self._edge(placement, owner[c, p], size / 2)
                 self._keep_outs(placement, owner[c, p], size / 2)
             self._ground_only(placement, c, owner[c])
             for pad in pads:
@@ -49,10 +45,8 @@ class Obstacles:
         x, y = self.grid.offsets(everywhere, *bend.centre_mm)
         owner[(np.abs(x) < bend.width_mm / 2) & (np.abs(y) < bend.length_mm / 2)] = BLOCKED
 
-    def _edge(
-        self, placement: Placement, owner: NDArray[np.int16], edge_mm: float, half_mm: float
-    ) -> None:
-        keep = edge_mm + half_mm + MARGIN_MM
+    def _edge(self, placement: Placement, owner: NDArray[np.int16], half_mm: float) -> None:
+        keep = placement.edge_clearance_mm + half_mm + MARGIN_MM
         from_hole = placement.hole_clearance_mm + half_mm + MARGIN_MM
         everywhere = slice(0, self.grid.height), slice(0, self.grid.width)
         x, y = self.grid.offsets(everywhere, *placement.outline.centre_mm)
