@@ -34,7 +34,7 @@ def pour_missing(files: Files) -> None:
 
 
 def tracks_thin(files: Files) -> None:
-    edit(files, "B_Cu.gbr", rb"(%ADD\d+C,)0\.2\*", rb"\g<1>0.1*")
+    edit(files, "B_Cu.gbr", rb"(%ADD\d+C,)0\.25?\*", rb"\g<1>0.1*")
 
 
 def opening_missing(files: Files) -> None:
@@ -211,7 +211,7 @@ def test_another_layer_in_another_zip(damaged_boards: Path) -> None:
 
 def test_the_layers_of_every_zip_are_held_against_the_board(damaged_boards: Path) -> None:
     def thin(files: Files) -> None:
-        edit(files, ".GBL", rb"(%ADD\d+C,)0\.2\*", rb"\g<1>0.1*")
+        edit(files, ".GBL", rb"(%ADD\d+C,)0\.25?\*", rb"\g<1>0.1*")
 
     for house in (FIRST, SECOND, "pcbway"):
         package = folder_of(damaged_boards) / f"{house}_receiver.zip"

@@ -108,15 +108,8 @@ def switched_tracks_at_the_crystal(text: str) -> str:
     return _renamed(text, "XL1", "SW")
 
 
-def supply_along_the_edge(text: str) -> str:
-    numbers = {name: number for number, name in re.findall(r'\(net (\d+) "(.*?)"\)', text)}
-    track = "(segment (start 140 126.4) (end 145 126.4) (width 0.5) "
-    return text.rstrip()[:-1] + f'{track}(layer "B.Cu") (net {numbers["5V"]}))\n)\n'
-
-
 DAMAGES: dict[Damage, set[str]] = {
     switched_tracks_at_the_crystal: {"crystal", "short", "supply_width"},
-    supply_along_the_edge: {"supply_edge", "edge_clearance", "short"},
     track_under_the_antenna: {"keep_out"},
     via_under_the_antenna: {"keep_out"},
     rule_missing: {"keep_out_rule"},

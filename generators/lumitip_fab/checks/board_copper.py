@@ -80,15 +80,13 @@ def measure_joined(read: ReadBoard) -> Iterator[Measurement]:
 
 
 def measure_supplies(read: ReadBoard) -> Iterator[Measurement]:
-    """Tracks of supplies: wide, but where ground's pour does the work; how near to the edge."""
+    """Width of the tracks of supplies, which are wide but where ground's pour does the work."""
     if read.auxiliary is None:
         return
     wide = {net for net in read.auxiliary.supplies if net != "GND"}
     tracks = [c for c in read.board.loose if c.kind == "track" and c.net in wide]
     narrowest = min((c.width_mm for c in tracks), default=math.nan)
     yield read.figure("supply_width", narrowest, read.design.rules.supply_track_mm, math.inf)
-    near = min((c.area.distance(read.outline.boundary) for c in tracks), default=math.nan)
-    yield read.figure("supply_edge", near, read.design.rules.edge_gap_mm - _ROUND_MM, math.inf)
 
 
 def _gap(read: ReadBoard, least_mm: float) -> Measurement:
