@@ -107,6 +107,7 @@ DAMAGES: dict[Damage, set[str]] = {
     # Its pads lie in the ground pour.
     capacitor_far: {
         "lands",
+        "bypass_via",
         "hot_loop",
         "hot_loop_input",
         "open",
