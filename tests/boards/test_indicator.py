@@ -203,3 +203,18 @@ def test_an_automatic_led_that_the_supply_does_not_suit_is_left_out(
     assert choice.value == "'none'"
     assert "to be seen" in choice.reason
     assert [lit.board for lit in design.electrical.indicators] == [left]
+
+
+def test_a_breakout_that_is_too_small_has_no_automatic_led(
+    design_dir: Path, tmp_path: Path
+) -> None:
+    folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
+    mine = folder / "mine.toml"
+    small = 'extends = "fingertip.toml"\n[protection]\ndiode = "none"\n[breakout]\n'
+    mine.write_text(small + "board_mm = [43.0, 36.0]\n")
+    choice = next(c for c in derive(load(mine)).choices if c.field == "breakout.indicator")
+    assert choice.value == "'none'"
+    assert "room between the wires" in choice.reason
+    mine.write_text(small + 'board_mm = [43.0, 36.0]\nindicator = "KT-0805YG"\n')
+    with pytest.raises(InputError, match=r"breakout\.indicator is 'KT-0805YG'; it has room"):
+        derive(load(mine))

@@ -97,15 +97,10 @@ def edge_beyond_the_antenna(text: str) -> str:
     )
 
 
-def _renamed(text: str, old: str, new: str) -> str:
-    """Every track of one net as one of the other."""
-    numbers = {name: number for number, name in re.findall(r'\(net (\d+) "(.*?)"\)', text)}
-    pattern = rf"(\(segment .*\(net ){numbers[old]}\)"
-    return re.sub(pattern, rf"\g<1>{numbers[new]})", text)
-
-
 def switched_tracks_at_the_crystal(text: str) -> str:
-    return _renamed(text, "XL1", "SW")
+    """Every track of the crystal's first net as one of the regulator's switches."""
+    numbers = {name: number for number, name in re.findall(r'\(net (\d+) "(.*?)"\)', text)}
+    return re.sub(rf"(\(segment .*\(net ){numbers['XL1']}\)", rf"\g<1>{numbers['SW']})", text)
 
 
 DAMAGES: dict[Damage, set[str]] = {

@@ -218,6 +218,22 @@ def test_an_automatic_diode_without_room_is_left_out(design_dir: Path, tmp_path:
     assert design.electrical.protection is None
 
 
+def test_parts_too_wide_for_a_modules_row_are_left_out_or_refused(
+    design_dir: Path, tmp_path: Path
+) -> None:
+    folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
+    mine = folder / "mine.toml"
+    wide = 'extends = "presets/integrated.toml"\n[protection]\nresistor = "0805"\n'
+    mine.write_text(wide)
+    choice = next(c for c in derive(load(mine)).choices if c.field == "protection.diode")
+    assert choice.value == "'none'"
+    mine.write_text(wide + 'diode = "H5VUD5U"\n')
+    with pytest.raises(
+        InputError, match=r"protection\.diode is 'H5VUD5U'; the row below the module"
+    ):
+        derive(load(mine))
+
+
 def test_a_controller_of_unknown_rating_is_not_limited(design_dir: Path, tmp_path: Path) -> None:
     folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
     table = folder / "parts/controllers.toml"

@@ -11,7 +11,7 @@ import pytest
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.design.cabling import front_headers
+from lumitip_fab.design.cabling import front_headers, plugged_headers
 from lumitip_fab.docs.bring_up import first_test
 from lumitip_fab.docs.flange import flange_step
 from lumitip_fab.docs.mounting import mounting
@@ -91,6 +91,9 @@ def test_the_way_of_each_cable_has_all_its_ties(written: Written, preset: str) -
     assert sorted(p for p in places if "holder" in p) == sorted(lugs)
     ties = next(p.quantity for p in design.purchase.pieces if p.item.startswith("cable tie"))
     assert sum(place.startswith("tie") for place in places) <= ties
+    headers = plugged_headers(design.cabling.cables, design.auxiliary_boards)
+    sockets = [place.removeprefix("socket at ") for place in places if "socket" in place]
+    assert sorted(sockets) == headers
     free = {loop.cable: f"{loop.length_mm:.0f} mm" for loop in design.cabling.loops}
     assert {name: way for name, _, way, _ in rows if "mm" in way} == free
 

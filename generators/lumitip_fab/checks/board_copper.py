@@ -84,9 +84,9 @@ def measure_supplies(read: ReadBoard) -> Iterator[Measurement]:
     if read.auxiliary is None:
         return
     wide = {net for net in read.auxiliary.supplies if net != "GND"}
-    tracks = [c for c in read.board.loose if c.kind == "track" and c.net in wide]
-    narrowest = min((c.width_mm for c in tracks), default=math.nan)
-    yield read.figure("supply_width", narrowest, read.design.rules.supply_track_mm, math.inf)
+    widths = [c.width_mm for c in read.board.loose if c.kind == "track" and c.net in wide]
+    least = read.design.rules.supply_track_mm
+    yield read.figure("supply_width", min(widths, default=math.nan), least, math.inf)
 
 
 def _gap(read: ReadBoard, least_mm: float) -> Measurement:

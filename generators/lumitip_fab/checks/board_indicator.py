@@ -9,6 +9,7 @@ from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design.electrical import Indicator
 
 _CATHODE, _ANODE = "1", "2"
+_FLANGE = "flange"
 _COIL, _TVS = "L1", "D1"
 
 
@@ -40,12 +41,12 @@ def _figures(lit: Indicator, resistor: float) -> tuple[float, float, float]:
 
 def _wrong(read: ReadBoard, lit: Indicator) -> Iterator[str]:
     """Pads that are not where they belong, and an LED that cannot be seen."""
-    led, supply = lit.led_ref, _feeding(read)
+    led, supply = lit.led_ref, _feeding(read, lit)
     ends = {read.group(lit.resistor_ref, 1), read.group(lit.resistor_ref, 2)}
     for ref, pad, found, wanted in (
         (lit.resistor_ref, "supply end", {supply} & ends, {supply}),
         (led, "anode", {read.group(led, _ANODE)}, ends - {supply, None}),
-        (led, "cathode", {read.group(led, _CATHODE)}, {_ground(read)}),
+        (led, "cathode", {read.group(led, _CATHODE)}, {_ground(read, lit)}),
     ):
         if not wanted or None in wanted or found != wanted:
             yield f"{ref}: {pad}"
@@ -54,17 +55,15 @@ def _wrong(read: ReadBoard, lit: Indicator) -> Iterator[str]:
         yield f"{led}: on the back"
 
 
-def _feeding(read: ReadBoard) -> int | None:
+def _feeding(read: ReadBoard, lit: Indicator) -> int | None:
     """The flange's output; on another board the controller's supply, at the receiver's wire."""
-    return (
-        output_of(read)
-        if _TVS in read.parts
-        else _at_wire(read, read.design.receiver.connector.supply)
-    )
+    if lit.board == _FLANGE:
+        return output_of(read)
+    return _at_wire(read, read.design.receiver.connector.supply)
 
 
-def _ground(read: ReadBoard) -> int | None:
-    return read.group(_TVS, "2") if _TVS in read.parts else _at_wire(read, GROUND)
+def _ground(read: ReadBoard, lit: Indicator) -> int | None:
+    return read.group(_TVS, "2") if lit.board == _FLANGE else _at_wire(read, GROUND)
 
 
 def _at_wire(read: ReadBoard, net: str) -> int | None:

@@ -35,10 +35,10 @@ def with_wider_tracks(placement: Placement, routing: Routing) -> Routing:
     """
     room = _Room(placement, routing)
     pieces = [[track] for track in routing.tracks]
-    narrow = [which for which in pieces if which[0].width_mm < WIDE_MM]
-    for which in sorted(narrow, key=lambda p: (p[0].net == placement.ground, -_length_mm(p[0]))):
-        which[:] = _cut(which[0], room.free(which[0]))
-        for piece in which:
+    narrow = [parts for parts in pieces if parts[0].width_mm < WIDE_MM]
+    for parts in sorted(narrow, key=lambda p: (p[0].net == placement.ground, -_length_mm(p[0]))):
+        parts[:] = _cut(parts[0], room.free(parts[0]))
+        for piece in parts:
             if piece.width_mm == WIDE_MM:
                 room.add(piece)
     return dataclasses.replace(routing, tracks=tuple(itertools.chain(*pieces)))

@@ -152,9 +152,9 @@ def _frame(
     wide = ways <= connectors.MOST_WIDE_WAYS and connectors.half_width_mm(ways, True) <= fits
     wires_half = connectors.half_width_mm(ways, wide)
     # Wide enough for a thread's holes at the row's ends, where the board need not grow for it.
-    tied_half = wires_half + OPEN_MM
-    tied = not is_flex(p) and tied_half + p.printer.min_wall_mm + pin_mm / 2 + rim <= half
-    beside = tied_half if tied else wires_half + NOTCH_BESIDE_MM
+    wider_half = wires_half + OPEN_MM
+    fits_wider = wider_half + p.printer.min_wall_mm + pin_mm / 2 + rim <= half
+    beside = wider_half if fits_wider and not is_flex(p) else wires_half + NOTCH_BESIDE_MM
     notch_half = max(beside, gripper.seat_width_mm / 2 + SEAT_CLEARANCE_MM)
     foot_half = foot_half_mm(config, notch_half)
     least_hole_x = notch_half + p.printer.min_wall_mm + pin_mm / 2

@@ -35,7 +35,7 @@ FIRST_AT: Point = (-24.95, -6.6)
 LAST_X_MM, ROW_Y_MM, PITCH_MM = -12.95, -6.3, 1.2
 """The last one, before the crystal; height, and part to part."""
 MOST_IN_ROW = 11
-"""With fewer parts the place before the crystal stays free."""
+"""More have no room; with fewer the place before the crystal stays free."""
 PART_GAP_MM = 0.2
 SWITCH_AT: Point = (-11.7, -0.6)
 FIRST_RESISTOR, FIRST_CAPACITOR = 5, 11
@@ -74,13 +74,12 @@ def refuse_row(config: Input, muxing: Muxing, faults: Diagnostics) -> None:
     capacitor = parts.capacitor
     wide_mm = parts.resistor.over_pads_mm[1]
     wide_mm = max(wide_mm, capacitor.over_pads_mm[1] if capacitor else 0.0)
-    each = 2 if capacitor else 1
+    needed = len(muxing.select_pins) + (2 if capacitor else 1) * len(muxing.adc_pins)
     faults.unless(
-        len(muxing.select_pins) + each * len(muxing.adc_pins) <= MOST_IN_ROW
-        and wide_mm + PART_GAP_MM <= PITCH_MM,
+        needed <= MOST_IN_ROW and wide_mm + PART_GAP_MM <= PITCH_MM,
         "module_row",
         most=MOST_IN_ROW,
-        needed=len(muxing.select_pins) + each * len(muxing.adc_pins),
+        needed=needed,
         most_mm=PITCH_MM - PART_GAP_MM,
         wide_mm=wide_mm,
     )
