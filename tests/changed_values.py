@@ -166,6 +166,7 @@ WITH: dict[str, dict[str, Any]] = {
     },
     "stack.film_mm": {"mask.film": "thick"},
     "tip.angle_deg": {"tip.edge_mm": 0.5656},
+    "breakout.indicator": {"breakout.board_mm": (45.72, 38.1)},
     "emitter.string_leds": {"emitter.current_ma": 5.0},
     "emitter.drive": FRONT,
     "mask.route": {"mask.film": "black"},

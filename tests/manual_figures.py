@@ -187,6 +187,7 @@ def _wrong_figures(manual: Manual, design: Design) -> list[str]:
 def _wrong_units(manual: Manual, design: Design) -> list[str]:
     """Hours, degrees and volts anywhere in the text that are not the design's."""
     volts = {design.wiring.supply_v, 5.0, 0.0}  # the controller's supply, and ground
+    volts |= {lit.output_v for lit in design.electrical.indicators}
     led = design.packages.led
     if not led.mark_is_known:  # 0.15 V less at the 1 mA of a multimeter
         volts.add(round(led.forward_voltage_v - 0.15, 1))

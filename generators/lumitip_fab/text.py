@@ -67,6 +67,7 @@ def passage(file: str, name: str) -> str:
 
     Raises:
         KeyError: if the file has no such passage.
+        ValueError: if two passages of it have one name.
     """
     return _passages(file)[name]
 
@@ -74,8 +75,11 @@ def passage(file: str, name: str) -> str:
 @lru_cache
 def _passages(file: str) -> dict[str, str]:
     _, *parts = re.split(r"^=== (\w+)\n", data_file(file), flags=re.MULTILINE)
+    names = parts[::2]
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        raise ValueError(f"{file}: two passages each for {', '.join(twice)}")
     texts = (part.removesuffix("\n") for part in parts[1::2])
-    return dict(zip(parts[::2], texts, strict=True))
+    return dict(zip(names, texts, strict=True))
 
 
 @lru_cache

@@ -15,7 +15,7 @@ from pydantic import ValidationError
 
 from box_gaps import from_point_mm, gap_mm, inside_mm, round_box
 from lumitip_fab.derive import derive
-from lumitip_fab.design import Design, Finger
+from lumitip_fab.design import Design, Finger, Part
 from lumitip_fab.errors import InputError
 
 pytestmark = pytest.mark.slow
@@ -28,7 +28,7 @@ PRESETS = ("asymmetric", "dense", "mux16", "published")
 def _faults(design: Design) -> Iterator[str]:
     """Every promise that a design breaks."""
     for finger in design.fingers:
-        for promise in (_of_parts, _of_holes, _of_reliefs, _of_connector):
+        for promise in (_of_parts, _of_bulk, _of_holes, _of_reliefs, _of_connector):
             yield from (f"{finger.name}: {fault}" for fault in promise(design, finger))
     yield from _of_outline(design)
 
@@ -41,7 +41,8 @@ def _of_parts(design: Design, finger: Finger) -> Iterator[str]:
     for name, box in zones.items():
         if inside_mm(box, design.board.box) < -NOISE_MM:
             yield f"zone {name} leaves the board"
-    for part in finger.parts:
+    bulk = _bulk(design, finger)
+    for part in (q for q in finger.parts if q not in bulk):
         zone = "cells" if part.kind in ("led", "photodetector") else "parts"
         if inside_mm(part.box, zones[zone]) < -NOISE_MM:
             yield f"{part.name} leaves the zone {zone}"
@@ -63,6 +64,24 @@ def _of_parts(design: Design, finger: Finger) -> Iterator[str]:
     heights = {q.height_mm for q in sides["front"]}
     if design.stack.silicone_mm - max(heights) < 0.3 - NOISE_MM:
         yield "less than 0.3 mm of silicone over a part"
+
+
+def _bulk(design: Design, finger: Finger) -> list[Part]:
+    """The bulk capacitor, which is not among the other parts but beside the wires."""
+    if design.electrical.bulk is None or finger.name != "receiver":
+        return []
+    return [max((q for q in finger.parts if q.kind == "capacitor"), key=lambda q: int(q.name[1:]))]
+
+
+def _of_bulk(design: Design, finger: Finger) -> Iterator[str]:
+    wire, holes = finger.connector.pad_mm / 2, [at for tie in finger.ties for at in tie.holes]
+    for part in _bulk(design, finger):
+        if inside_mm(part.box, design.board.box) < 0.5 - NOISE_MM:
+            yield f"{part.name} is too near the board's edge"
+        if any(from_point_mm(part.box, pad) < wire + 0.5 for pad in finger.connector.pads):
+            yield f"{part.name} meets a wire pad"
+        if any(from_point_mm(part.box, hole) < finger.ties[0].hole_mm / 2 + 0.3 for hole in holes):
+            yield f"{part.name} meets a hole of the thread"
 
 
 def _of_holes(design: Design, finger: Finger) -> Iterator[str]:

@@ -98,7 +98,7 @@ def test_every_part_slices_without_support(
         small = name.startswith(("fit/", "mould/prop"))  # thin, and much brim
         most = 1.25 if small else 1.10
         assert 0.97 < part["grams"] / part["solid_g"] < most, name
-        assert part["reach_mm"] < 2.5, name  # a bridge of 5 mm at most
+        assert part["reach_mm"] < 3.0, name  # a bridge of 6 mm at most; PETG holds over 15
         assert part["first_layer_mm2"] > 150.0 and part["seconds"] > 3 * 60, name
         assert (tmp_path / f"{Path(name).stem}.gcode").stat().st_size > 10_000
         own = {"backing": filament, "mask": "TPU 95A"}

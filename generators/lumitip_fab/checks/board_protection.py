@@ -46,11 +46,12 @@ def measure_protection(read: ReadBoard) -> Iterator[Measurement]:
 
 
 def line_of(read: ReadBoard, group: int | None) -> int | None:
-    """The copper of the wire of a pin: beyond its resistor, or the pin's own."""
+    """The copper of a pin's wire: beyond its resistor, or the pin's own if none leads there."""
     protection = read.design.electrical.protection
     if group is None or protection is None or protection.board != read.name:
         return group
-    beyond = [other for _, other in _resistors(read, group)]
+    wires = {wire.group for wire in _wires(read, protection)}
+    beyond = [other for _, other in _resistors(read, group) if other in wires]
     return beyond[0] if len(beyond) == 1 else group
 
 

@@ -262,7 +262,7 @@ class Parameters(Strict):
     letters."""
     revision: Annotated[str, Field(pattern=REVISION)]
     """Revision of the design, on boards and drawings."""
-    date: Annotated[str, Field(pattern=DATE)] = ""
+    date: Annotated[str, Field(pattern=DATE)]
     """Date of the revision, such as "2026-11-28", in the title blocks of boards and schematics;
     empty for none. It is yours to change: the same file gives the same bytes on each day."""
     grid: Grid

@@ -114,7 +114,7 @@ def _contacts(design: Design) -> str:
     return _text(
         "sockets",
         counted="" if plugs(design) else _text("counted"),
-        wired=_text("wired") if plugs(design) else "",
+        wired=_text("other_contacts") if plugs(design) else "",
         rows="\n".join(_contact_rows(design)),
     )
 

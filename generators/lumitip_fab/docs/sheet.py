@@ -10,29 +10,26 @@ import PIL.Image
 from markdown_it.token import Token
 from reportlab import rl_config
 from reportlab.graphics.shapes import Group, String
-from reportlab.lib import colors
-from reportlab.lib.enums import TA_RIGHT
 from reportlab.lib.pagesizes import A4
-from reportlab.lib.styles import ParagraphStyle
 from reportlab.lib.units import inch, mm
 from reportlab.pdfgen.canvas import Canvas
 from reportlab.platypus import (
-    CondPageBreak,
     Flowable,
     Image,
     KeepTogether,
     LongTable,
+    PageBreak,
     Paragraph,
     SimpleDocTemplate,
     Table,
-    TableStyle,
 )
 from svglib.svglib import svg2rlg
 
 from lumitip_fab.docs.page import markdown
+from lumitip_fab.docs.sheet_styles import BESIDE, BODY, CELL, FIGURE, HEADS, ITEM, LINES, SMALL
 from lumitip_fab.pipeline.artefact import Files
 from lumitip_fab.text import page_letters
-from lumitip_fab.typeface import BOLD, CODE, OF_HELVETICA, PLAIN, load_typeface
+from lumitip_fab.typeface import CODE, OF_HELVETICA, PLAIN, load_typeface
 
 rl_config.useA85 = 0  # streams as text take most of the time, and a quarter more room
 
@@ -47,51 +44,7 @@ _COLUMNS = ((1, 1), (2, 4), (3, 1000))
 """How many pictures of a paragraph stand in a row, up to how many."""
 _SHARES = (1.0, 0.9, 0.8)  # of a drawing, where that saves a page
 _DPI = 200
-_BODY = ParagraphStyle(
-    "body",
-    fontName=PLAIN,
-    fontSize=9.2,
-    leading=13.6,
-    spaceAfter=5,
-    bulletFontName=PLAIN,
-    bulletFontSize=9.2,
-)
-_ITEM = ParagraphStyle("item", _BODY, leftIndent=16, spaceAfter=3)
-_CELL = ParagraphStyle("cell", _BODY, fontSize=7.6, leading=10.6, spaceAfter=0)
-_FIGURE = ParagraphStyle("figure", _CELL, alignment=TA_RIGHT)
-_GREY = colors.HexColor("#5a6b7a")
-_SMALL = ParagraphStyle("small", _BODY, fontSize=7.1, alignment=1, textColor=_GREY)
-_HEADS = {
-    level: ParagraphStyle(
-        f"h{level}",
-        _BODY,
-        fontName=BOLD,
-        fontSize=size,
-        leading=size * 1.25,
-        spaceBefore=before,
-        spaceAfter=6,
-        keepWithNext=1,
-    )
-    for level, (size, before) in {1: (17, 0), 2: (13, 14), 3: (10.5, 10), 4: (9, 8)}.items()
-}
-_LINES = TableStyle(
-    [
-        ("GRID", (0, 0), (-1, -1), 0.4, colors.HexColor("#cfd6dc")),
-        ("BACKGROUND", (0, 0), (-1, 0), colors.HexColor("#f4f6f8")),
-        ("VALIGN", (0, 0), (-1, -1), "TOP"),
-        ("FONTNAME", (0, 0), (-1, -1), PLAIN),
-        ("TOPPADDING", (0, 0), (-1, -1), 2),
-        ("BOTTOMPADDING", (0, 0), (-1, -1), 2),
-    ]
-)
 _LETTER, _PADDING = 4.9, 18.0  # width of a letter of a cell's text, and what is left beside it
-_BESIDE = TableStyle(
-    [
-        ("ALIGN", (0, 0), (-1, -1), "CENTER"),
-        ("VALIGN", (0, 0), (-1, -1), "BOTTOM"),
-        ("FONTNAME", (0, 0), (-1, -1), PLAIN),
-    ]
-)
 
 
 def pdf_sheets(name: str, text: str, files: Files) -> bytes:
@@ -152,10 +105,32 @@ def _kept(tokens: list[Token], files: Files) -> list[Flowable]:
         return list(_flowables(tokens, files))
     steps = [list(_flowables(tokens, files, share)) for share in _SHARES]
     found = [(math.ceil(high / _PAGE_HIGH), high) for high in map(_high, steps)]
-    best = min(range(len(steps)), key=lambda share: found[share][0])
-    if found[best][0] == 1:
-        return [KeepTogether(steps[best])]
-    return [CondPageBreak(found[best][1] % _PAGE_HIGH), *steps[best]]  # else one page more
+    fewest = min(pages for pages, _ in found)
+    if fewest == 1:
+        return [
+            KeepTogether(next(s for s, (pages, _) in zip(steps, found, strict=True) if pages == 1))
+        ]
+    return [_Long([(high, s) for s, (n, high) in zip(steps, found, strict=True) if n == fewest])]
+
+
+class _Long(Flowable):  # type: ignore[misc]
+    """A step of more than one page. It begins on the page of the step before it where it then takes
+    no page more, with the largest drawings that do so; else on a new one."""
+
+    def __init__(self, choices: list[tuple[float, list[Flowable]]]) -> None:
+        super().__init__()
+        self._choices = choices
+
+    def wrap(self, width: float, _high: float) -> tuple[float, float]:
+        """Higher than any page: it is always split."""
+        return width, math.inf
+
+    def split(self, _width: float, left: float) -> list[Flowable]:
+        """The step with drawings for the room that is left."""
+        for high, step in self._choices:
+            if high % _PAGE_HIGH <= left:
+                return step
+        return [PageBreak(), *self._choices[0][1]]
 
 
 def _high(step: list[Flowable]) -> float:
@@ -184,12 +159,12 @@ def _flowables(tokens: list[Token], files: Files, share: float = 1.0) -> Iterato
             before = tokens[at - 1]
             if before.type in ("th_open", "td_open"):
                 text = _inline(token)
-                style = _FIGURE if "right" in str(before.attrs.get("style", "")) else _CELL
+                style = FIGURE if "right" in str(before.attrs.get("style", "")) else CELL
                 rows[-1].append(Paragraph(f"<b>{text}</b>" if before.tag == "th" else text, style))
             elif before.type == "heading_open":
                 yield from _heading(int(before.tag[1]), token)
             elif numbers:
-                yield Paragraph(_inline(token), _ITEM, bulletText=_bullet(numbers))
+                yield Paragraph(_inline(token), ITEM, bulletText=_bullet(numbers))
             else:
                 yield from _paragraph(token, files, share)
 
@@ -203,28 +178,28 @@ def _bullet(numbers: list[int | None]) -> str:
 
 
 def _heading(level: int, token: Token) -> Iterator[Flowable]:
-    yield Paragraph(_inline(token), _HEADS[min(level, 4)])
+    yield Paragraph(_inline(token), HEADS[min(level, 4)])
 
 
 def _paragraph(token: Token, files: Files, share: float) -> Iterator[Flowable]:
     children = token.children or []
     pictures = [child for child in children if child.type == "image"]
     if not pictures:
-        yield Paragraph(_inline(token), _BODY)
+        yield Paragraph(_inline(token), BODY)
     columns = next(n for n, most in _COLUMNS if len(pictures) <= most)
     width = (_WIDTH - (columns - 1) * _GAP) / columns
     high = _PAIR_HIGH if columns > 1 else _MOST_HIGH
     shown = [
         [
             _picture(str(child.attrs["src"]), files, width, high, share),
-            Paragraph(escape(child.content), _SMALL),
+            Paragraph(escape(child.content), SMALL),
         ]
         for child in pictures
     ]
     if pictures:
         padded = [*shown, *[""] * (-len(shown) % columns)]
         rows = [padded[i : i + columns] for i in range(0, len(padded), columns)]
-        yield Table(rows, [_WIDTH / columns] * columns, style=_BESIDE)
+        yield Table(rows, [_WIDTH / columns] * columns, style=BESIDE)
 
 
 def _picture(path: str, files: Files, width: float, high: float, share: float) -> Flowable:
@@ -273,7 +248,7 @@ def _table(rows: list[list[Paragraph]]) -> Flowable:
     widths = [low + share * (high - low) for low, high in zip(least, asked, strict=True)]
     if share < 0:
         widths = [_WIDTH / sum(asked) * high for high in asked]
-    table = LongTable(rows, widths, repeatRows=1, style=_LINES, hAlign="LEFT")
+    table = LongTable(rows, widths, repeatRows=1, style=LINES, hAlign="LEFT")
     table.spaceBefore = table.spaceAfter = 6
     return table
 

@@ -6,12 +6,15 @@ from collections.abc import Iterator
 import numpy as np
 
 from lumitip_fab.design import Flange, Point, ToolContact
-from lumitip_fab.scenes.drawing import LINE_MM, Points, Sheet
+from lumitip_fab.scenes.drawing import Points, Sheet
 
-SCALE = 2.2
+SCALE = 1.0
+"""True size: a print of the page is laid on the coupling."""
 _CONTACT_MM = 1.7
 _FIRST_MM = 8.0
 """From the contacts to the nearest label."""
+_LINE_MM = 6.5
+"""From label to label: all of them beside the face."""
 _LABEL_MM, _WORDS_MM = 6.0, 34.0
 _METAL, _PIN = "#d9dde2", "#8b95a1"
 
@@ -47,7 +50,7 @@ def _labelled(contacts: tuple[ToolContact, ...]) -> Iterator[tuple[ToolContact, 
     for way in (1, -1):
         side = [c for c in contacts if (1 if c.at[1] >= 0 else -1) == way]
         for place, contact in enumerate(sorted(side, key=lambda c: (-c.at[0], way * c.at[1]))):
-            yield contact, way * (SCALE * abs(contact.at[1]) + _FIRST_MM + LINE_MM * place)
+            yield contact, way * (SCALE * abs(contact.at[1]) + _FIRST_MM + _LINE_MM * place)
 
 
 def _circle(at: Point, diameter_mm: float) -> Points:
