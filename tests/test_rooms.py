@@ -74,7 +74,7 @@ ALLOWED_READOUT = {
     ),
 }
 """The rooms of `lumitip`: `core` is its root, `face` what opens fingertips."""
-FACE = {"__init__", "async_fingertip", "cli", "fingertip", "group", "options"}
+FACE = {"__init__", "__main__", "async_fingertip", "cli", "fingertip", "group", "options"}
 
 
 def modules(package: str) -> dict[str, Path]:

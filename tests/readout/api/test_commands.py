@@ -15,6 +15,14 @@ from lumitip.errors import LinkError
 from lumitip.links.twin import TwinLink, published_layout
 
 
+def test_the_package_runs_as_its_command() -> None:
+    whole = [sys.executable, "-m", "lumitip", "--version"]
+    ran = subprocess.run(whole, capture_output=True, text=True, check=True)
+    assert ran.stdout.split()[0] == "lumitip"
+    wrong = subprocess.run([*whole[:3], "nothing"], capture_output=True, text=True, check=False)
+    assert wrong.returncode == 2 and "Traceback" not in wrong.stderr
+
+
 def test_doctor_finds_nothing_wrong_with_the_twin(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["doctor", "twin://disc?rate=300&speed=300", "--seconds", "1.5"]) == 0
     told = capsys.readouterr().out

@@ -1,0 +1,5 @@
+"""`python -m lumitip`: the command `lumitip`."""
+
+from lumitip.cli import run
+
+run()
