@@ -2,13 +2,14 @@
 
 import argparse
 import signal
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from lumitip.commands.common import open_fingertip
+from lumitip.commands.common import layout_path, open_fingertip
 from lumitip.interrupt import INTERRUPTED
 
 if TYPE_CHECKING:
@@ -16,10 +17,13 @@ if TYPE_CHECKING:
     from lumitip.recording import Writer
 
 _POLL_S = 0.2  # longest reaction time to Ctrl-C
+_SILENT_S = 1.0
+"""Without a frame for so long, the user is told."""
 
 
 def run(options: argparse.Namespace) -> int:
     """Record until Ctrl-C or a limit."""
+    from lumitip.errors import LumitipError
     from lumitip.recording import RecordingError, Writer
 
     if options.file.suffix != ".mcap":
@@ -31,14 +35,26 @@ def run(options: argparse.Namespace) -> int:
         writer = Writer(
             options.file, tip.layout, device_id=tip.device_id, calibration=tip.calibration
         )
-        with writer:
-            print(f"{tip.device_id}: recording to {options.file} (Ctrl-C ends it)", flush=True)
-            _record(tip, writer, options, interrupted)
+        silence = _Silence(tip.device_id)
+        try:
+            with writer:
+                layout = layout_path(options, options.url)
+                of = f", its layout is {layout}" if layout else ""
+                print(
+                    f"{tip.device_id}: recording to {options.file}{of} (Ctrl-C ends it)", flush=True
+                )
+                _record(tip, writer, options, interrupted, silence)
+        except LumitipError:
+            if not writer.frames:
+                options.file.unlink(missing_ok=True)  # so that the next try has its name
+            raise
         dropped = tip.stats.dropped
     counts = dropped.items() if dropped else ()
     lost = "".join(f", {n} lost ({cause})" for cause, n in counts if n)
-    print(f"{writer.frames} frames recorded{lost}")
-    return INTERRUPTED if interrupted.by == signal.SIGINT else 0
+    print(f"{writer.frames} frames recorded{lost}{silence.summary()}")
+    if interrupted.by == signal.SIGINT:
+        return INTERRUPTED
+    return 1 if silence.lasts else 0
 
 
 def _record(
@@ -46,6 +62,7 @@ def _record(
     writer: "Writer",
     options: argparse.Namespace,
     interrupted: "_Interruption",
+    silence: "_Silence",
 ) -> None:
     from lumitip.errors import EndOfRecording, LinkTimeout
 
@@ -55,11 +72,47 @@ def _record(
         if left <= 0.0:
             return
         try:
-            writer.write(tip.read(timeout=min(left, _POLL_S)))
-        except LinkTimeout:
-            continue  # the link reconnects
+            frame = tip.read(timeout=min(left, _POLL_S))
+        except LinkTimeout as error:
+            silence.goes_on(str(error).partition(": ")[2])  # the link reconnects
         except EndOfRecording:
             return
+        else:
+            silence.ends()
+            writer.write(frame)
+
+
+class _Silence:
+    """Tells the user when no frames come, and when they come again."""
+
+    def __init__(self, device_id: str) -> None:
+        self.lasts = False
+        self._device_id = device_id
+        self._since = time.monotonic()
+        self._whole_s = 0.0
+
+    def goes_on(self, why: str) -> None:
+        """No frame came."""
+        if not self.lasts and time.monotonic() - self._since > _SILENT_S:
+            self.lasts = True
+            self._say(f"no frame for {_SILENT_S:g} s: {why}")
+
+    def ends(self) -> None:
+        """A frame came."""
+        now = time.monotonic()
+        if self.lasts:
+            self.lasts = False
+            self._whole_s += now - self._since
+            self._say(f"frames come again, after {now - self._since:.1f} s")
+        self._since = now
+
+    def summary(self) -> str:
+        """For the last line: how long it was silent in all; empty if it was not."""
+        whole_s = self._whole_s + (time.monotonic() - self._since if self.lasts else 0.0)
+        return f", silent for {whole_s:.1f} s in all" if whole_s else ""
+
+    def _say(self, words: str) -> None:
+        print(f"{self._device_id}: {words}", file=sys.stderr, flush=True)
 
 
 class _Interruption:

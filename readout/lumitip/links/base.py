@@ -35,7 +35,8 @@ class Arrival:
     content: Packet | Codes | RecordedFrame | Fault
     """`Codes`: a legacy frame, shape `(cells,)`, 8 bits."""
     patient: bool = False
-    """Whether `deliver` may block until there is a reader with room, as for recordings."""
+    """Whether `deliver` may block until there is a reader with room, as for the first frame of a
+    recording."""
 
 
 EventKind = Literal["connected", "lost", "restarted", "warm", "ended", "failed"]

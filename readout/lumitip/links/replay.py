@@ -2,12 +2,12 @@
 
     replay://FILE?speed=1&finger=NAME
 
-`finger` chooses one of several fingertips, see `lumitip.recording.Reader`. `speed` is a factor; 0
-is as fast as the frames are read: playing starts with the first reader, and waits for all readers,
-except those that read nothing for 5 s. Frames keep their numbers and times, so `Frame.t` is a time
-of the recording computer. Layout and calibration are those of the recording. `~` is the home
-folder. Gaps are not shortened, unlike in `lumitip replay` and the live view. Needs mcap: the extra
-`record`.
+`finger` chooses one of several fingertips, see `lumitip.recording.Reader`. Playing starts when the
+first frame is asked for, so that none is missed. `speed` is a factor; 0 is as fast as the frames
+are read: playing waits for all readers, except those that read nothing for 5 s. Frames keep their
+numbers and times, so `Frame.t` is a time of the recording computer. Layout and calibration are
+those of the recording. `~` is the home folder. Gaps are not shortened, unlike in `lumitip replay`
+and the live view. Needs mcap: the extra `record`.
 """
 
 import time
@@ -41,18 +41,20 @@ class ReplayLink(ThreadedLink):
             report(LinkEvent("ended", f"{self._reader.path} is over"))
 
     def _play(self, deliver: Deliver) -> None:
-        began = time.monotonic()
+        began = played_s = 0.0
         last: float | None = None
-        played_s = 0.0
         for frame in self._reader:
-            if self._speed:
+            first = last is None
+            if last is not None and self._speed:
                 # The wall clock may have been set back during the recording.
-                played_s += max(0.0, frame.t_wall - last) if last is not None else 0.0
-                last = frame.t_wall
+                played_s += max(0.0, frame.t_wall - last)
                 self._stopping.wait(max(0.0, began + played_s / self._speed - time.monotonic()))
             if self._stopping.is_set():
                 return
-            deliver(Arrival(time.monotonic(), frame, patient=not self._speed))
+            deliver(Arrival(time.monotonic(), frame, patient=first or not self._speed))
+            if first:
+                began = time.monotonic()
+            last = frame.t_wall
 
 
 def make(url: Url, layout: Layout | None, any_design: bool) -> ReplayLink:

@@ -36,11 +36,11 @@ class Hub:
         source = Source(link.layout, lambda: link.device_id, any_design)
         self.intake = Intake(source, self._counter, self._report)
         self._drift = DriftWatch()
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
         self._changed = threading.Condition(self._lock)
         self._queues: tuple[FrameQueue, ...] = ()
         self._newest: tuple[Frame, float] | None = None  # and when it was read, by our clock (s)
-        self._wanted = False  # whether `newer` waits
+        self._wanted = False  # whether the newest frame was asked for
         self._connected = False
         self._was_connected = False
         self._over: LinkError | None = None
@@ -158,9 +158,7 @@ class Hub:
                 left_s = until - time.monotonic()
                 if left_s <= 0.0:
                     break
-                if not self._wanted:
-                    self._wanted = True
-                    self._changed.notify_all()
+                self._ask()
                 self._changed.wait(min(left_s, threading.TIMEOUT_MAX))
             else:
                 return frame
@@ -175,6 +173,8 @@ class Hub:
             ArgumentError: if the age is wrong.
         """
         max_age_s, newest = seconds(max_age_s, "max_age_s"), self._newest
+        if newest is None:
+            self._ask()
         if self._over and not isinstance(self._over, EndOfRecording):
             raise self._over.with_traceback(None)
         if max_age_s is not None:
@@ -183,6 +183,13 @@ class Hub:
                 found = f"the newest frame is {age_s:.3f} s old" if newest else "no frame came yet"
                 raise StaleFrame(f"{found}, max_age_s is {max_age_s:g}: {self._why_silent()}")
         return newest[0] if newest else None
+
+    def _ask(self) -> None:
+        """Let a recording that waits for its first reader begin."""
+        with self._changed:
+            if not self._wanted:
+                self._wanted = True
+                self._changed.notify_all()
 
     def silent(self, timeout_s: float | None) -> LinkTimeout:
         """The error when no frame came in time."""

@@ -27,13 +27,15 @@ class Player:
     Args:
         path: of the recording; damaged parts are skipped.
         speed: factor.
+        finger: name of a fingertip in a file with several.
 
     Raises:
-        LumitipError: if the file is not a recording, is empty or too large.
+        LumitipError: if the file is not a recording, is empty or too large, or has several
+            fingertips and not the one that is named.
     """
 
-    def __init__(self, path: Path, speed: float = 1.0) -> None:
-        reader = Reader(path, tolerant=True)
+    def __init__(self, path: Path, speed: float = 1.0, finger: str | None = None) -> None:
+        reader = Reader(path, tolerant=True, finger=finger)
         self.layout: Layout = reader.layout
         self.device_id = reader.metadata.device_id
         self.calibration = reader.metadata.calibration
@@ -61,14 +63,15 @@ class Player:
 
     @classmethod
     def of_url(cls, text: str) -> "Player":
-        """The player of `replay://FILE?speed=2`.
+        """The player of `replay://FILE?speed=2&finger=NAME`.
 
         Raises:
             LumitipError: if the address is wrong, or as the class.
         """
         url = Url.parse(text)
-        url.allow("speed")
-        return cls(url.path, url.number("speed", 1.0, SLOWEST, FASTEST))
+        url.allow("speed", "finger")
+        speed = url.number("speed", 1.0, SLOWEST, FASTEST)
+        return cls(url.path, speed, url.options.get("finger"))
 
     def start(self, deliver: Deliver, report: Report) -> None:
         """Start playing."""
@@ -127,8 +130,13 @@ class Player:
 
     def _run(self, deliver: Deliver, report: Report) -> None:
         report(LinkEvent("connected", f"a recording of {self.device_id}"))
+        first = True
         while (number := self._wait()) is not None:
-            deliver(Arrival(time.monotonic(), self._frames[number]))
+            deliver(Arrival(time.monotonic(), self._frames[number], patient=first))
+            if first:  # time begins when the frame was taken
+                first = False
+                with self._changed:
+                    self._since = None
 
     def _wait(self) -> int | None:
         """Wait for the next frame; returns its number, `None` to stop."""

@@ -67,6 +67,30 @@ def test_it_plays_in_its_own_time(record, layout: Layout) -> None:
     assert frames[-1].values[0] == 255.0 - 22
 
 
+def test_a_reader_that_comes_late_misses_nothing(record) -> None:
+    with Fingertip.open(f"replay://{record(20)}?speed=50") as tip:
+        time.sleep(0.2)  # longer than the recording
+        assert tip.latest() is None
+        assert [frame.seq for frame in tip.frames()] == [*range(5), *range(8, 23)]
+
+
+@pytest.mark.parametrize("asks", ["latest", "wait_latest"])
+def test_asking_for_the_newest_frame_starts_it(record, asks: str) -> None:
+    with Fingertip.open(f"replay://{record(20)}") as tip:
+        until = time.monotonic() + 5.0
+        frame = None
+        while frame is None and time.monotonic() < until:
+            frame = tip.latest() if asks == "latest" else tip.wait_latest(1.0)
+        assert frame is not None and frame.seq < 5
+
+
+def test_a_recording_that_nobody_reads_can_be_closed(record) -> None:
+    began = time.monotonic()
+    with Fingertip.open(f"replay://{record(20)}"):
+        pass
+    assert time.monotonic() - began < 2.0
+
+
 def test_the_home_folder_has_its_usual_sign(
     record, layout: Layout, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

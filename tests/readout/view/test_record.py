@@ -2,6 +2,7 @@
 
 import os
 import re
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +15,7 @@ from playwright.sync_api import Page, expect
 from live_page import opened, until
 from lumitip import Layout, LumitipError
 from lumitip.calibration import Calibration
+from lumitip.cli import main
 from lumitip.fingertip import Fingertip
 from lumitip.recording import Reader, RecordingError, Writer, summarise
 from lumitip.view.finger import Finger
@@ -141,6 +143,38 @@ def test_player_gives_every_frame_as_it_was(recording: Path, wait_for: WaitFor) 
     player.control(playing=True)
     wait_for(lambda: len(got) == 2 * len(expected))
     player.stop()
+
+
+def test_a_replay_waits_for_the_view_that_reads_it(recording: Path, wait_for: WaitFor) -> None:
+    finger = Finger.open(f"replay://{recording}?speed=16")
+    time.sleep(0.8)  # longer than the recording at this speed
+    assert finger.count == 0
+    finger.start(lambda: None)
+    try:
+        wait_for(lambda: finger.count == 800)
+        assert finger.newer(799)[0][0][0].seq == list(Reader(recording))[-1].seq
+    finally:
+        finger.close()
+
+
+def test_one_of_several_fingers_is_replayed(recording: Path, tmp_path: Path) -> None:
+    both = tmp_path / "both.mcap"
+    assert (
+        main(
+            [
+                "foxglove",
+                f"left={recording}",
+                f"right={recording}",
+                "--out",
+                str(both),
+                "--no-estimate",
+            ]
+        )
+        == 0
+    )
+    with pytest.raises(LumitipError, match=r"'left', 'right': choose one"):
+        Finger.open(f"replay://{both}")
+    assert Player.of_url(f"replay://{both}?finger=right").device_id == "finger"
 
 
 def test_player_shows_the_frame_it_is_wound_to(recording: Path, wait_for: WaitFor) -> None:
