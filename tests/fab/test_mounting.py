@@ -176,11 +176,16 @@ def test_the_flange_is_measured_where_it_can_be_reached(written: Written) -> Non
     assert (nets[found[2]], nets[found[3]]) == ("5V", "GND")
 
 
-def test_a_bench_supply_is_needed_where_a_light_shows_it(written: Written) -> None:
-    design = written({}, "dense")
-    bare = replace(design, electrical=replace(design.electrical, indicators=()))
-    lit = [bool(d.electrical.indicators) for d in (design, bare)]
-    assert [("a bench supply" in steps(d)) for d in (design, bare)] == lit
+@pytest.mark.parametrize(("preset", "light"), [("dense", ""), ("flex", " D2 on the front lights ")])
+def test_the_flange_s_board_is_tried_before_it_meets_the_robot(
+    written: Written, preset: str, light: str
+) -> None:
+    text = words(steps(written({}, preset)))
+    tried = text.index("with a limit of 100 mA, its plus on the test point 24V_IN")
+    shown = "The meter shows 24 V at the test point 24V and 5 V at the test point 5V."
+    assert tried < text.index(shown + light) < text.index("The TVS diode D1 stays cold.")
+    assert "a bench supply" in text[:tried]
+    assert text.index("TVS diode") < text.index("measure in the contacts of J3: 5 V from")
 
 
 @pytest.mark.parametrize("preset", ["published", "integrated"])

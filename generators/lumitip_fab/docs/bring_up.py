@@ -14,6 +14,7 @@ def first_test(design: Design) -> str:
         "tested",
         loading=_loading(design) + "".join(_lights(design)),
         limit_ma=_limit_ma(design),
+        tape=design.mould.tape,
         poles=_poles(design.cabling, f"{design.wiring.supply_v:g}V"),
         supply_v=design.wiring.supply_v,
         lit="They are dark until the firmware runs, and draw" if switched else "They draw",

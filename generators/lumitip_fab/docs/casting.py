@@ -152,9 +152,12 @@ def _held(design: Design, fingers: tuple[Finger, ...]) -> str:
     bare = _text("bare", keys=len(design.keys)) if design.keys else ""
     openings = "window" if sunk else "window and every hole for thread"
     taped, tape = "", ""
-    if any(open_back(design, finger) for finger in fingers):
+    if opened := [finger.name for finger in fingers if open_back(design, finger)]:
         number = 4 if sunk else 3
-        taped = _text("taped", number=number, tape=mould.tape, openings=openings, bare=bare)
+        where = "C" if len(opened) == len(fingers) else f"On the {opened[0]}, c"
+        taped = _text(
+            "taped", number=number, where=where, tape=mould.tape, openings=openings, bare=bare
+        )
         tape = f"{mould.tape}, "
     name = "pocket" if sunk else "plate"
     glue = {"glue": design.strength.glue, "glue_hard_h": mould.glue_hard_h}
@@ -235,7 +238,7 @@ def _filled(design: Design) -> str:
     needs += ["the smooth film, a plastic card, " for _ in design.mould.inserts]
     full = "the silicone bulges over the weir and the stops"
     if props:
-        full = "the silicone covers all stops, and stands higher at the tip"
+        full = "the silicone covers the tip line, and comes near to both pads"
     return _text("filled", needs="".join(needs), work=_numbered(work), full=full)
 
 
@@ -265,7 +268,8 @@ def _clamped(design: Design) -> str:
 def _out(design: Design) -> str:
     mould, bends = design.mould, not design.stack.sunk
     held = ["clamp, screws and nuts"] if design.clamps else []
-    held += ["all tape"] if bends or not design.clamps else []
+    taped = bends or not design.clamps or any(open_back(design, f) for f in design.fingers)
+    held += ["all tape"] * taped
     return _text(
         "out",
         cure_h=mould.cure_h,

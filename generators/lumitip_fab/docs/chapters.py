@@ -125,9 +125,24 @@ def _boards(design: Design, files: Files) -> str:
         breaking=", pliers, small files, safety glasses" * bool(design.panels),
         polarity=polarity_test(design.packages, design.fingers),
         protection=protection_note(design),
+        led=design.packages.led,
+        detector=design.packages.photodetector,
+        unplaced=_unplaced(files),
         last=", then the string resistors on the back of the emitter" if behind else "",
         pictures="\n".join(pictures),
     )
+
+
+def _unplaced(files: Files) -> str:
+    """Parts that the PCB fab which mounts parts does not know by a number; empty without any."""
+    rows = [
+        row
+        for path in files.like("boards/*/*.kicad_pcb")
+        for row in files.facts(path).get("parts", ())
+        if not row["lcsc"]
+    ]
+    parts = dict.fromkeys(f"{row['value']} ({row['manufacturer']} {row['part']})" for row in rows)
+    return _text("unplaced", parts=as_written(listed(list(parts)))) + "\n" if parts else ""
 
 
 def _panels(design: Design) -> str:

@@ -1,14 +1,17 @@
 """The manual's step of the flange: its board, its printed parts, its bolts, the gripper's cable."""
 
+import re
 from collections.abc import Iterator
 
 from lumitip_fab.design import AuxiliaryBoard, Design, Flange
 from lumitip_fab.design.cabling import INPUT_END, front_headers, gripper_headers, plugged_headers
 from lumitip_fab.design.electrical import Indicator
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
+from lumitip_fab.docs.protection import TVS
 from lumitip_fab.docs.wiring import SLOT_MM2, listed
 from lumitip_fab.text import as_written, passage
 
+_SUPPLY = re.compile(r"[\d.]+V")
 OWN_MM = (12, 16, 20, 25)
 """Lengths of a gripper's own bolts, as examples."""
 FLANGE_MIN = 60
@@ -33,8 +36,7 @@ def _needs(design: Design) -> Iterator[str]:
     """Tools, and what is used up."""
     yield "the keys and screwdrivers, a soldering iron, solder, side cutters, safety glasses"
     yield f"a multimeter, {design.strength.glue}, nitrile gloves"
-    if _lights(design):
-        yield "a bench supply"
+    yield "a bench supply"
     if plugs(design):
         yield "a small vice"
 
@@ -50,10 +52,7 @@ def _work(design: Design, flange: Flange) -> Iterator[str]:
     yield _text("taken_off")
     yield _text("confirmed", volts=_volts(_raw(design)))
     yield _text("contacts", flange=flange)
-    for lit in _lights(design):
-        output = f"{lit.output_v:g}V"
-        raw = _raw(design)
-        yield _text("indicator", lit=lit, supply=_volts(raw), raw=raw, output=output)
+    yield _tried(design)
     hard_h = design.mould.glue_hard_h
     wait = f"for {hard_h:g} h" if hard_h else "for as long as its label says"
     yield _text("closed", flange=flange, glue=design.strength.glue, wait=wait)
@@ -61,20 +60,36 @@ def _work(design: Design, flange: Flange) -> Iterator[str]:
     yield from _powered(design)
 
 
+def _tried(design: Design) -> str:
+    """The flange's board alone, on a bench supply."""
+    raw, board = _raw(design), _flange(design)
+    points = [f"{_volts(net)} at the test point {net}" for net in _outputs(design)]
+    signs = "".join(_text("lit", lit=lit) for lit in _lights(design))
+    diodes = [part for part in board.components if part.kind == TVS]
+    signs += "".join(_text("cold", part=part) for part in diodes)
+    return _text("indicator", supply=_volts(raw), raw=raw, outputs=listed(points), signs=signs)
+
+
 def _powered(design: Design) -> Iterator[str]:
-    """Where the flange's supply is measured once the gripper hides its board."""
-    for lit in _lights(design):
-        output = f"{lit.output_v:g}V"
-        for part in front_headers(_flange(design)):
+    """Where the supply of the controller is measured once the gripper hides the flange's board."""
+    for part in front_headers(_flange(design)):
+        carried = {net for _, net in part.nets}
+        found = [net for net in _outputs(design) if net in carried]
+        if found and "GND" in carried:
             plus, minus = (
                 [f"{part.ref}.{number}" for number, net in part.nets if net == wanted]
-                for wanted in (output, "GND")
+                for wanted in (found[-1], "GND")
             )
-            if plus and minus:
-                volts = f"{lit.output_v:g} V"
-                header = part.ref
-                yield _text("powered", header=header, volts=volts, plus=plus[0], minus=minus[-1])
-                return
+            volts = _volts(found[-1])
+            yield _text("powered", header=part.ref, volts=volts, plus=plus[0], minus=minus[-1])
+            return
+
+
+def _outputs(design: Design) -> list[str]:
+    """Nets of test points behind the fuse that carry a supply, such as `"5V"`, the lowest last."""
+    supplies = _flange(design).supplies
+    found = [net for net in _probed(design) if net in supplies and _SUPPLY.fullmatch(net)]
+    return sorted(found, key=lambda net: -float(net.removesuffix("V")))
 
 
 def _lights(design: Design) -> list[Indicator]:

@@ -17,6 +17,7 @@ def mounting(design: Design) -> str:
         needs=", ".join(_needs(design)),
         minutes=_minutes(design),
         ways=cable_ways(design),
+        closed=_text("touch_first" if design.mount.tilt_deg else "parallel"),
         signs=_text("flange_sign") if design.flanges else "",
     )
 
@@ -47,7 +48,7 @@ def _work(design: Design) -> Iterator[str]:
         sockets = "".join(_text("plugged", cable=cable, header=header) for header, cable in found)
         yield _text("connected", sockets=sockets)
     yield _text("activated", rated_n=design.strength.rated_force_n, greatest=_greatest(design))
-    if mount.lugs:
+    if mount.lugs or any(holder.lugs for holder in design.holders):
         yield _text("tied")
     yield _text("screwed_on", bolts=len(mount.bolt_u_mm), mount=mount)
     wires = [wire for cable in design.cabling.cables for wire in cable.wires]

@@ -29,7 +29,8 @@ def _of(board: AuxiliaryBoard) -> Iterator[str]:
         yield _text("protected_esd", board=board.name, diodes=_references(diodes), limited=limited)
     for part in kinds[TVS]:
         melts = "".join(_text("protected_fuse", fuse=fuse) for fuse in kinds[FUSE])
-        yield _text("protected_tvs", board=board.name, part=part, melts=melts)
+        where = 'its test (step "Flange")' if board.name == "flange" else "the first test"
+        yield _text("protected_tvs", board=board.name, part=part, melts=melts, where=where)
 
 
 def _references(parts: Sequence[Component]) -> str:

@@ -23,6 +23,7 @@ from reportlab.platypus import (
     SimpleDocTemplate,
     Table,
 )
+from reportlab.platypus.doctemplate import NullActionFlowable
 from svglib.svglib import svg2rlg
 
 from lumitip_fab.docs.page import markdown
@@ -37,13 +38,15 @@ _MARGIN = 20 * mm
 _WIDTH = A4[0] - 2 * _MARGIN
 _PAGE_HIGH = A4[1] - 2 * 18 * mm - 12  # between the margins, less the frame's own padding
 _MOST_HIGH = 132 * mm  # of a drawing, which otherwise has its own size
-_WIDE, _WIDE_HIGH = 1.5, 145 * mm  # of the page: a drawing so wide has small words already
+_WIDE, _WIDE_HIGH = 1.5, 170 * mm  # of the page: a drawing so wide has small words already
 _GAP = 6 * mm  # between pictures beside each other
 _PAIR_HIGH = 85 * mm
 _COLUMNS = ((1, 1), (2, 4), (3, 1000))
 """How many pictures of a paragraph stand in a row, up to how many."""
 _SHARES = (1.0, 0.9, 0.8)  # of a drawing, where that saves a page
 _DPI = 200
+_EMPTY = 0.35  # of a page that the next step then begins on
+_WHOLE_ROWS = 14  # of a table that is not parted between pages
 _LETTER, _PADDING = 4.9, 18.0  # width of a letter of a cell's text, and what is left beside it
 
 
@@ -115,7 +118,8 @@ def _kept(tokens: list[Token], files: Files) -> list[Flowable]:
 
 class _Long(Flowable):  # type: ignore[misc]
     """A step of more than one page. It begins on the page of the step before it where it then takes
-    no page more, with the largest drawings that do so; else on a new one."""
+    no page more, with the largest drawings that do so, or where much of that page is empty; else on
+    a new one."""
 
     def __init__(self, choices: list[tuple[float, list[Flowable]]]) -> None:
         super().__init__()
@@ -128,8 +132,9 @@ class _Long(Flowable):  # type: ignore[misc]
     def split(self, _width: float, left: float) -> list[Flowable]:
         """The step with drawings for the room that is left."""
         for high, step in self._choices:
-            if high % _PAGE_HIGH <= left:
-                return step
+            if high % _PAGE_HIGH <= left or left > _EMPTY * _PAGE_HIGH:
+                # Before a heading something else must come, or it is not kept with its drawing.
+                return [NullActionFlowable(), *step]
         return [PageBreak(), *self._choices[0][1]]
 
 
@@ -248,7 +253,8 @@ def _table(rows: list[list[Paragraph]]) -> Flowable:
     widths = [low + share * (high - low) for low, high in zip(least, asked, strict=True)]
     if share < 0:
         widths = [_WIDTH / sum(asked) * high for high in asked]
-    table = LongTable(rows, widths, repeatRows=1, style=LINES, hAlign="LEFT")
+    split = len(rows) > _WHOLE_ROWS
+    table = LongTable(rows, widths, repeatRows=1, splitByRow=split, style=LINES, hAlign="LEFT")
     table.spaceBefore = table.spaceAfter = 6
     return table
 

@@ -114,9 +114,7 @@ def _lugged(design: Design) -> str:
     if not lugs:
         return ""
     wide, thick = lugs[0].tie_mm
-    fingers = passage(_TEXTS, "at_block") if design.mount.lugs else ""
-    parts = listed(named)
-    return passage(_TEXTS, "lugged").format(parts=parts, wide=wide, thick=thick, fingers=fingers)
+    return passage(_TEXTS, "lugged").format(parts=listed(named), wide=wide, thick=thick)
 
 
 def listed(names: list[str]) -> str:

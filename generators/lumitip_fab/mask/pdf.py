@@ -175,7 +175,7 @@ def _texts(canvas: Canvas, artwork: Artwork, mask: Mask, title: Title, paper: st
         "Measure both rulers on a paper print. Not 100.0 mm? Put the readings into",
         "mask.measured_ruler_mm (horizontal, vertical) and build again. "
         f"This page is made for {across:g} and {up:g}.",
-        "Solid line: cut. Grey dashes: fold, away from the print, in the order of the numbers.",
+        "Solid line: cut. Grey dashes: fold, towards the print, in the order of the numbers.",
         "Seen from the unprinted side, the letter F and the finger's name read right.",
     )
     x, y = places.notes
