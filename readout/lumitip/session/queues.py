@@ -15,6 +15,7 @@ PATIENCE_S = 5.0
 """Time that a recording waits for an idle reader (s)."""
 BEHIND_S = 0.5
 """Time that a frame may wait in a queue without a warning (s)."""
+_CAUGHT_UP_S = 0.1  # a reader that is less behind is warned at `BEHIND_S` again
 
 
 class FrameQueue:
@@ -38,6 +39,7 @@ class FrameQueue:
         self._closed: LinkError | None = None
         self._waits = self._idle = False
         self._warns = counted
+        self._warns_at_s = BEHIND_S
 
     def put(self, frames: Sequence[Frame], wait: bool = False) -> int:
         """Add frames; returns the number of frames dropped.
@@ -93,10 +95,9 @@ class FrameQueue:
                 self._waits = False
                 self._changed.notify_all()
             frame, since_s = self._frames.popleft()
-            waiting, warns = len(self._frames), self._warns
-            behind_s = time.monotonic() - since_s
-            self._warns = warns and behind_s <= BEHIND_S
-        if warns and not self._warns:
+            waiting, behind_s = len(self._frames), time.monotonic() - since_s
+            warns = self._warns and self._is_news(behind_s)
+        if warns:
             _log.warning(
                 "%s: this reader is %.1f s behind, %d frames wait in its queue. Use wait_latest() "
                 "if only the newest frame matters; to get every frame, read faster",
@@ -105,6 +106,15 @@ class FrameQueue:
                 waiting,
             )
         return frame
+
+    def _is_news(self, behind_s: float) -> bool:
+        """Whether a delay is due for a warning: the first long one, and each doubling of it."""
+        news = behind_s > self._warns_at_s
+        if news:
+            self._warns_at_s = 2.0 * behind_s
+        elif behind_s < _CAUGHT_UP_S:
+            self._warns_at_s = BEHIND_S
+        return news
 
     def _gone(self) -> bool:
         return self._idle or self._closed is not None

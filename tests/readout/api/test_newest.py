@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import re
 import threading
 import time
 
@@ -11,6 +12,7 @@ import pytest
 from lumitip import AsyncFingertip, Fingertip, LinkEvent
 from lumitip.errors import ArgumentError, EndOfRecording, FingertipClosed, LinkTimeout, StaleFrame
 from lumitip.recording import Writer
+from lumitip.session.queues import FrameQueue
 
 
 def test_each_call_waits_for_a_newer_frame_of_the_twin() -> None:
@@ -139,9 +141,7 @@ def test_coroutines_wait_for_the_newest() -> None:
     asyncio.run(main())
 
 
-def test_a_reader_that_falls_behind_is_warned_once(
-    open_feed, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_reader_that_falls_behind_is_warned(open_feed, caplog: pytest.LogCaptureFixture) -> None:
     tip, feed = open_feed()
     with pytest.raises(LinkTimeout):
         tip.read(0.0)
@@ -153,6 +153,33 @@ def test_a_reader_that_falls_behind_is_warned_once(
     (record,) = caplog.records
     assert record.getMessage().startswith("feed: this reader is 0.")
     assert "3 frames wait in its queue. Use wait_latest() if only the newest" in record.getMessage()
+
+
+def test_a_reader_is_warned_at_each_doubling_and_anew_once_it_has_caught_up(
+    open_feed, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    tip, feed = open_feed()
+    feed.packet(0)
+    frame = tip.latest()
+    now_s = 0.0
+    monkeypatch.setattr("lumitip.session.queues.time.monotonic", lambda: now_s)
+
+    def warned(delays_s: list[float], counted: bool = True, wait: bool = False) -> list[str]:
+        nonlocal now_s
+        caplog.clear()
+        queue = FrameQueue(10, counted=counted)
+        for delay_s in delays_s:
+            queue.put([frame], wait)
+            now_s += delay_s
+            assert queue.get(0.0) is frame
+        return re.findall(r"is (\d\.\d) s behind", caplog.text)
+
+    slower = [0.125 * n for n in range(48)]
+    with caplog.at_level(logging.WARNING):
+        assert warned(slower) == ["0.6", "1.4", "2.9", "5.9"]
+        assert warned([0.6, 0.4, 0.6]) == ["0.6"], "it has not caught up"
+        assert warned([3.0, 0.05, 0.6, 1.3]) == ["3.0", "0.6", "1.3"]
+        assert warned(slower, counted=False) == warned(slower, wait=True) == []
 
 
 def test_a_reader_that_waits_for_a_link_is_not_warned(
