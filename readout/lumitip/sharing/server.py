@@ -169,8 +169,12 @@ class FingertipServer:
             with self._lock:
                 self._clients = tuple(one for one in self._clients if one is not client)
             counts = client.counts
-            _log.info(
-                "%s has left: %d frames sent, %d dropped", counts.name, counts.sent, counts.dropped
+            _log.log(
+                logging.WARNING if counts.dropped else logging.INFO,
+                "%s has left: %d frames sent, %d dropped",
+                counts.name,
+                counts.sent,
+                counts.dropped,
             )
 
     def _join(self, client: Client, token: str) -> None:

@@ -1,5 +1,6 @@
 """`FingertipServer` and `tcp://` links, over real sockets."""
 
+import re
 import socket
 import threading
 import time
@@ -77,6 +78,8 @@ def test_a_slow_client_loses_the_oldest_and_slows_nobody(serve, until, caplog) -
                 if kind == Kind.PACKET:
                     lost += timeline.place(decode(payload, 32), time.monotonic()).lost or 0
     assert caplog.text.count("is too slow") == 1
+    until(lambda: "has left" in caplog.text)
+    assert re.search(rf"WARNING .*{name} has left: \d+ frames sent, [1-9]\d* drop", caplog.text)
 
 
 def test_a_client_that_leaves_leaves_the_server_running(serve, until) -> None:
