@@ -1,8 +1,6 @@
 """`FingertipServer`: shares one fingertip with several programs over TCP."""
 
-import errno
 import logging
-import socket
 import threading
 from pathlib import Path
 from types import TracebackType
@@ -11,13 +9,14 @@ from urllib.parse import urlencode
 import numpy as np
 
 from lumitip import arguments
-from lumitip.errors import AccessRefused, LinkError, SharingError
+from lumitip.errors import LinkError, SharingError
 from lumitip.layout import Layout
 from lumitip.links import open_link
 from lumitip.links.base import Arrival, Deliver, Fault, Link, LinkEvent, Prepares, Report
-from lumitip.links.tcp import DEFAULT_PORT, Address, greeting_of
+from lumitip.links.occupant import listen_or_explain
+from lumitip.links.tcp import DEFAULT_PORT
 from lumitip.links.url import Url
-from lumitip.listening import is_token, listen, public_host, server_token
+from lumitip.listening import is_token, public_host, server_token
 from lumitip.protocol import messages
 from lumitip.protocol.messages import Kind, MessageError
 from lumitip.protocol.packet import Packet, encode
@@ -74,7 +73,7 @@ class FingertipServer:
         self._buffer = arguments.count(buffer, "buffer")
         self._host = host
         self._token = server_token(token, host, SharingError)
-        self._socket = _listen(host, port)
+        self._socket = listen_or_explain(host, port, SharingError)
         self._lock = threading.Lock()
         self._clients: tuple[Client, ...] = ()
         self._threads: list[threading.Thread] = []
@@ -266,25 +265,3 @@ class _Tee:
     def stop(self) -> None:
         """See `Link`."""
         self._link.stop()
-
-
-def _listen(host: str, port: int) -> socket.socket:
-    try:
-        return listen(host, port, SharingError)
-    except SharingError as error:
-        cause = error.__cause__
-        if not isinstance(cause, OSError) or cause.errno != errno.EADDRINUSE:
-            raise
-        raise SharingError(f"{host}:{port} is taken: {_occupant(Address(host, port))}") from cause
-
-
-def _occupant(address: Address) -> str:
-    """Who listens at an address, and what to do, for the user."""
-    other = "choose another --port; port 0 is any free one"
-    try:
-        device = greeting_of(address).device_id
-    except AccessRefused:
-        return f"`lumitip serve` listens there. Open the address that it has printed, or {other}"
-    except LinkError:
-        return f"another program listens there. End it, or {other}"
-    return f"`lumitip serve` shares {device} there. Open {address} instead, or {other}"

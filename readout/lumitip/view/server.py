@@ -18,7 +18,8 @@ from starlette.responses import PlainTextResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from lumitip.errors import ViewError
-from lumitip.listening import is_loopback, is_token, listen, public_host, server_token
+from lumitip.links.occupant import listen_or_explain
+from lumitip.listening import is_loopback, is_token, public_host, server_token
 from lumitip.view.app import make_app
 from lumitip.view.registry import FingerRegistry
 
@@ -46,7 +47,7 @@ class ViewServer:
         token: secret that browsers must send; default: random if needed.
 
     Raises:
-        ViewError: if the address cannot be used, or the token cannot be sent.
+        ViewError: if the address is taken or cannot be used, or the token cannot be sent.
     """
 
     def __init__(
@@ -58,7 +59,7 @@ class ViewServer:
     ) -> None:
         self.registry = registry
         self.token = server_token(token, host, ViewError)
-        self._socket = listen(host, port, ViewError)
+        self._socket = listen_or_explain(host, port, ViewError)
         self.port: int = self._socket.getsockname()[1]
         self._host = host
         guard = Guard(make_app(registry), is_loopback(host), self.token, self.port)

@@ -17,6 +17,9 @@ import pytest
 from lumitip.cli import main
 from lumitip.links.twin import published_layout
 from lumitip.recording import Reader
+from lumitip.sharing import FingertipServer
+from lumitip.view.registry import FingerRegistry
+from lumitip.view.server import ViewServer
 
 
 @contextmanager
@@ -53,13 +56,37 @@ def test_two_words_show_a_demonstration_and_ctrl_c_ends_it(tmp_path: Path) -> No
     assert reader.metadata.device_id == "twin:demo"
 
 
-def test_port_that_is_taken_is_told(capsys: pytest.CaptureFixture[str]) -> None:
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
-        assert main(["view", "twin://demo", "--port", str(port)]) == 2
+def taken(port: int, capsys: pytest.CaptureFixture[str]) -> str:
+    """The message of the command that this port is taken, without its beginning."""
+    assert main(["view", "twin://demo", "--port", str(port)]) == 2
     error = capsys.readouterr().err
-    assert f"127.0.0.1:{port} cannot be used" in error
-    assert "--port" in error
+    before = f"lumitip: 127.0.0.1:{port} is taken: "
+    assert error.startswith(before)
+    assert error.endswith("choose another --port; port 0 is any free one\n")
+    return error.removeprefix(before)
+
+
+@pytest.mark.slow
+def test_a_port_of_another_program_says_what_to_do(capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        error = taken(other.getsockname()[1], capsys)
+    assert error.startswith("another program listens there. End it, or")
+
+
+def test_a_port_of_a_shared_fingertip_says_its_name(capsys: pytest.CaptureFixture[str]) -> None:
+    with FingertipServer("twin://disc", port=0) as server:
+        address = server.address
+        error = taken(int(address.rpartition(":")[2]), capsys)
+    assert error.startswith(f"`lumitip serve` shares twin:disc there. Open {address} instead, or")
+
+
+@pytest.mark.parametrize("token", [None, "secret"])
+def test_a_port_of_another_live_view_says_so(
+    token: str | None, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    with ViewServer(FingerRegistry((), tmp_path), port=0, token=token) as server:
+        error = taken(server.port, capsys)
+    assert error.startswith("`lumitip view` listens there. Open the page that it has printed, or")
 
 
 @pytest.mark.parametrize(

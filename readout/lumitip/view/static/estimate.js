@@ -63,12 +63,14 @@ export function estimateReadings(estimate) {
   return [...rows, ["misfit", rms === null ? null : `${FIXED(rms, 1)} counts`]];
 }
 
-/** The sentence below the numbers: the first flag in words, and the names of others. */
+/** The text below the numbers: the first flag in words, the names of others, and whether the finger
+ * was tared, which a trusted estimate needs as well. */
 export function estimateWords(estimate, { estimates: { state, detail }, calibrated, player }) {
   if (state === "failed") return `no estimate: ${detail}`;
   if (state === "preparing") return "the tables of the estimate are being computed";
-  if (!estimate?.words.length) return "";
-  const others = estimate.flags.length > 1 ? `; also ${estimate.flags.slice(1).join(", ")}` : "";
-  const untared = calibrated || player ? "" : ". Not tared yet";
-  return estimate.words[0] + others + untared;
+  const [doubt, ...others] = estimate?.words.length ? [estimate.words[0], ...estimate.flags.slice(1)] : [];
+  const sentences = [];
+  if (doubt) sentences.push(others.length ? `${doubt}; also ${others.join(", ")}` : doubt);
+  if (!calibrated && !player) sentences.push("Not tared yet");
+  return sentences.join(". ");
 }
