@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -93,6 +94,27 @@ def test_misfit_is_said_in_words_without_moving_the_page(
     expect(page.locator(".kind").nth(1)).to_have_text("none")
     heights = page.locator("aside").evaluate_all("all => all.map((e) => e.scrollHeight)")
     assert heights[0] == heights[1]
+
+
+def test_a_trusted_estimate_says_too_that_the_finger_is_not_tared(
+    serve: Serve, page: Page, still: StillFinger, layout: Layout
+) -> None:
+    estimate, finger = shown(page, serve, still, layout, SCENES["edge"])
+    assert estimate.flags == ()
+    words = page.locator(".words")
+    expect(words).to_have_text("Not tared yet")
+    finger.tip.calibration = replace(finger.tip.calibration, empty=np.full(len(layout), 255.0))
+    expect(words).to_have_text("")
+
+
+def test_a_doubted_estimate_says_both(
+    serve: Serve, page: Page, still: StillFinger, layout: Layout
+) -> None:
+    codes = np.zeros(len(layout))
+    codes[::3] = 250
+    opened(page, serve(still(layout, codes)))
+    text = re.compile(r"^misfit: no edge, .*; the error may be larger.*\. Not tared yet$")
+    expect(page.locator(".words")).to_have_text(text)
 
 
 def test_a_layout_without_estimates_says_why(

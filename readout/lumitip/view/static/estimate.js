@@ -63,14 +63,14 @@ export function estimateReadings(estimate) {
   return [...rows, ["misfit", rms === null ? null : `${FIXED(rms, 1)} counts`]];
 }
 
-/** The text below the numbers: the first flag in words, the names of others, and whether the finger
- * was tared, which a trusted estimate needs as well. */
+/** The text below the numbers: the first flag in words and the names of others, and whether the
+ * finger was not tared, of which no flag need be the sign. */
 export function estimateWords(estimate, { estimates: { state, detail }, calibrated, player }) {
   if (state === "failed") return `no estimate: ${detail}`;
   if (state === "preparing") return "the tables of the estimate are being computed";
-  const [doubt, ...others] = estimate?.words.length ? [estimate.words[0], ...estimate.flags.slice(1)] : [];
-  const sentences = [];
-  if (doubt) sentences.push(others.length ? `${doubt}; also ${others.join(", ")}` : doubt);
-  if (!calibrated && !player) sentences.push("Not tared yet");
-  return sentences.join(". ");
+  const [first, ...others] = estimate?.flags ?? [];
+  const also = others.length ? `; also ${others.join(", ")}` : "";
+  const doubt = first ? estimate.words[0] + also : "";
+  const untared = calibrated || player ? "" : "Not tared yet";
+  return [doubt, untared].filter(Boolean).join(". ");
 }
