@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import IO, BinaryIO, NamedTuple, cast
 
 import zstandard
-from mcap.exceptions import McapError
+from mcap.exceptions import EndOfFile, InvalidMagic, McapError
 from mcap.records import Channel, Chunk, Footer, McapRecord, Message, Schema
 from mcap.records import Metadata as MetadataRecord
 from mcap.stream_reader import StreamReader, breakup_chunk
@@ -167,7 +167,7 @@ def read_metadata(stream: BinaryIO, source: str, finger: str | None = None) -> t
         if isinstance(record, MetadataRecord) and record.name == NAME:
             texts[record.metadata.get(FINGER, "")] = record.metadata
         if isinstance(record, Fault) and not texts:
-            raise RecordingError(f"{source} is not a recording, or is truncated: {record.why}")
+            raise RecordingError(f"{source} is no MCAP recording, or is cut off: {record.why}")
         if isinstance(record, Chunk | Message | Fault):
             break
     if not texts:
@@ -281,4 +281,8 @@ class _Bounded:
 
 
 def _text(error: BaseException) -> str:
+    if isinstance(error, InvalidMagic):
+        return "not the bytes that begin and end an MCAP file"
+    if isinstance(error, struct.error | EOFError | EndOfFile):
+        return "the bytes of a record are missing"
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__

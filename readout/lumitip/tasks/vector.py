@@ -41,14 +41,6 @@ try:
 except ImportError as error:
     raise MissingExtra("gym", "the environments") from error
 
-try:
-    import gymnasium
-    from gymnasium.utils.seeding import np_random
-    from gymnasium.vector import AutoresetMode, VectorEnv
-    from gymnasium.vector.utils import batch_space
-except ImportError as error:
-    raise MissingExtra("gym", "the environments") from error
-
 
 class TraceVectorEnv(VectorEnv[Observation, Observation, NDArray[Any]]):
     """Many tasks: one step is one frame of each sensor."""

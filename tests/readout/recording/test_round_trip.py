@@ -259,6 +259,7 @@ def test_other_topics_are_passed_over(tmp_path: Path, layout: Layout, make_frame
 
 def test_files_that_are_no_recordings_are_refused(tmp_path: Path) -> None:
     (tmp_path / "text.mcap").write_text("hello, this is not a recording")
+    (tmp_path / "short.mcap").write_text("x")
     (tmp_path / "empty.mcap").touch()
     with (tmp_path / "other.mcap").open("wb") as file:
         other = McapWriter(file)
@@ -268,8 +269,12 @@ def test_files_that_are_no_recordings_are_refused(tmp_path: Path) -> None:
         ("none.mcap", "cannot be read"),
         (".", "cannot be read"),
         ("a\0b", "cannot be read"),
-        ("text.mcap", "is not a recording"),
-        ("empty.mcap", "is not a recording"),
+        (
+            "text.mcap",
+            r"no MCAP recording, or is cut off: .* \(not the bytes that begin and end an",
+        ),
+        ("short.mcap", r"near byte 1 \(the bytes of a record are missing\)"),
+        ("empty.mcap", r"near byte 0 \(the bytes of a record are missing\)"),
         ("other.mcap", "not a recording of a fingertip"),
     ):
         with pytest.raises(RecordingError, match=said) as caught:
