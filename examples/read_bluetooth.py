@@ -7,6 +7,7 @@ import sys
 import time
 
 from lumitip import Fingertip, LinkEvent, LumitipError
+from lumitip.errors import StaleFrame
 
 if len(sys.argv) <= 2:
     sys.exit(__doc__)
@@ -20,9 +21,11 @@ def print_event(event: LinkEvent) -> None:
 try:
     with Fingertip.open(sys.argv[1], layout=sys.argv[2], on_event=print_event) as tip:
         for _ in range(50):
-            frame = tip.latest()
-            if frame is not None and time.monotonic() - frame.t < 0.5:
+            try:
+                frame = tip.latest(max_age_s=0.5)
                 print(f"{frame.seq:6}  {(frame.values < 128).sum():2} cells covered")
+            except StaleFrame:  # none yet, or the link has stalled
+                pass
             time.sleep(0.02)
 except LumitipError as error:  # each says what to do: not found, several of that name, MTU, …
     sys.exit(str(error))

@@ -36,9 +36,11 @@ class Frame:
     """Arrival of the packet, `time.monotonic` (s)."""
     t: float
     """Time the cells were read, `time.monotonic` (s): the device clock fitted to the host clock,
-    late by the shortest delay of the link. Strictly increases, and frames are never closer than 0.8
-    times their distance by the device clock: after a stall at the start of a link `t` is later than
-    the fit, and even than `t_host`, until it has caught up. `t_host` for a legacy device."""
+    late by the shortest delay of the link. Strictly increases, and frames are never closer than a
+    quarter of their distance by the device clock: after a stall before the first frame of a link
+    `t` is later than `t_host`, by a quarter of the stall and 0.05 s at most, until it has caught
+    up. So test an age by `Fingertip.latest(max_age_s)`, which counts from the earlier of both.
+    `t_host` for a legacy device."""
     t_wall: float
     """`t` as seconds since 1970 (UTC)."""
     raw: Codes

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lumitip import Fingertip
+from lumitip.session.timing import DeviceClock, SteadyTime
 
 
 def test_frames_keep_their_distance_when_a_stall_begins_the_link(open_feed) -> None:
@@ -17,10 +18,28 @@ def test_frames_keep_their_distance_when_a_stall_begins_the_link(open_feed) -> N
         feed.packet(4 * n, 4, t_host=base + arrival)
         frames.append(tip.latest())
     steps_s = np.diff([f.t for f in frames])
-    assert steps_s.min() >= 0.8 * 0.04 - 1e-9
+    assert steps_s.min() >= 0.25 * 0.04 - 1e-9
     assert steps_s[-1] == pytest.approx(0.04, abs=1e-6), "it has caught up"
     assert frames[-1].t <= frames[-1].t_host
     assert np.diff([f.t_wall for f in frames]).min() > 0.0
+
+
+@pytest.mark.parametrize("stall_s", [0.2, 1.0, 2.0, 5.0])
+@pytest.mark.parametrize("period_s", [0.005, 0.04])
+def test_times_after_a_stall_at_the_start_lead_little_and_not_long(
+    stall_s: float, period_s: float
+) -> None:
+    clock, steady = DeviceClock(), SteadyTime()
+    read_s = np.arange(0.0, 8.0, period_s)
+    arrivals_s = np.maximum(read_s, stall_s) + 0.002
+    times_s = []
+    for read, arrival in zip(read_s.tolist(), arrivals_s.tolist(), strict=True):
+        clock.add(read, arrival)
+        times_s.append(steady.next(min(clock.host(read), arrival), read))
+    lead_s = times_s - arrivals_s
+    assert lead_s.max() < 0.25 * stall_s + 0.05
+    assert arrivals_s[lead_s > 1e-6].max() - stall_s < stall_s / 3.0 + 0.3
+    assert np.diff(times_s).min() >= 0.25 * period_s - 1e-9
 
 
 def test_a_link_that_stalls_and_then_bursts_keeps_the_times_of_its_frames(
