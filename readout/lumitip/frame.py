@@ -40,7 +40,8 @@ class Frame:
     quarter of their distance by the device clock: after a stall before the first frame of a link
     `t` is later than `t_host`, by a quarter of the stall and 0.05 s at most, until it has caught
     up. So test an age by `Fingertip.latest(max_age_s)`, which counts from the earlier of both.
-    `t_host` for a legacy device."""
+    For a legacy device `t_host`, but frames that arrive in one bunch are spaced by the mean period:
+    from 0.5 s before `t_host` to a period after it."""
     t_wall: float
     """`t` as seconds since 1970 (UTC)."""
     raw: Codes

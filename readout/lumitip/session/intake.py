@@ -12,6 +12,7 @@ from lumitip.frame import Codes, Frame, RecordedFrame, Values, complement, froze
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Fault, LinkEvent, Report
 from lumitip.protocol.packet import ForeignPacketError, Packet, design_code
+from lumitip.session.arrivals import ArrivalTime
 from lumitip.session.stats import Counter
 from lumitip.session.timing import DeviceClock, SteadyTime, Timeline
 
@@ -39,6 +40,7 @@ class Intake:
         self._report = report
         self._timeline = Timeline()
         self._steady = SteadyTime()
+        self._arrivals = ArrivalTime()
         self._fault_since: Fault | None = None
         self._legacy_frames = 0
         self._first_recorded = True
@@ -48,6 +50,7 @@ class Intake:
     def reconnected(self) -> None:
         """Note that the link has reconnected."""
         self._timeline.reconnected()
+        self._arrivals.reconnected()
 
     def frames(self, arrival: Arrival) -> list[Frame]:
         """The new frames of an arrival, in order.
@@ -113,7 +116,7 @@ class Intake:
         seq = self._legacy_frames
         self._legacy_frames += 1
         raw = frozen(raw)
-        t = self._steady.next(t_host, None)
+        t = self._steady.next(self._arrivals.next(t_host), None)
         return Frame(
             seq,
             None,

@@ -5,7 +5,9 @@ import time
 import numpy as np
 import pytest
 
-from lumitip import Fingertip
+from lumitip import Fingertip, LinkEvent
+from lumitip.errors import NotConnected
+from lumitip.session.arrivals import ArrivalTime
 from lumitip.session.timing import DeviceClock, SteadyTime
 
 
@@ -69,11 +71,63 @@ def test_legacy_frames_of_one_moment_have_times_in_order(
     now = time.monotonic()
     monkeypatch.setattr(time, "monotonic", lambda: now)
     frames = []
-    for value in range(3):
+    for value in range(90):
+        now += 0.06 if value % 3 == 0 else 0.0
         feed.legacy(value)
         frames.append(tip.latest())
-    assert np.diff([f.t for f in frames]).min() > 0.0
+    t, t_host = (np.array([getattr(f, name) for f in frames]) for name in ("t", "t_host"))
+    assert np.diff(t).min() > 0.0
     assert np.diff([f.t_wall for f in frames]).min() > 0.0
+    assert np.diff(t[30:]) == pytest.approx(0.02, rel=0.02)
+    assert (t <= t_host + 0.02 + 1e-9).all()
+    assert t[-1] == pytest.approx(t_host[-1], abs=0.002)
+
+
+def _legacy_times(arrivals_s: np.ndarray) -> np.ndarray:
+    arrivals, steady = ArrivalTime(), SteadyTime()
+    return np.array([steady.next(arrivals.next(at), None) for at in arrivals_s.tolist()])
+
+
+@pytest.mark.parametrize("interval_s", [0.03, 0.05, 0.1])
+@pytest.mark.parametrize("period_s", [0.01, 0.0182, 0.02])
+def test_legacy_frames_of_any_connection_interval_are_spaced(
+    period_s: float, interval_s: float
+) -> None:
+    noise_s = np.random.default_rng(1).exponential(0.0003, round(20.0 / period_s))
+    read_s = np.arange(noise_s.size) * period_s
+    arrivals_s = np.ceil(read_s / interval_s) * interval_s
+    stalled = (read_s > 9.9) & (arrivals_s < 10.3)
+    arrivals_s[stalled] = 10.3
+    arrivals_s = np.maximum.accumulate(arrivals_s + noise_s)
+    t = _legacy_times(arrivals_s)
+    assert np.diff(t).min() > 0.0
+    later = read_s > 5.0
+    steps = np.diff(t[later]) / period_s
+    assert steps.min() > 0.6
+    assert steps.max() < 1.6
+    assert (t - arrivals_s)[later].max() < 1.1 * period_s
+    assert np.ptp((t - read_s)[later]) < 1.5 * period_s
+
+
+def test_legacy_times_after_lost_frames_are_early_for_a_moment() -> None:
+    arrivals_s = np.concatenate([np.arange(0.0, 10.0, 0.02), np.arange(12.0, 20.0, 0.02)])
+    early_s = arrivals_s - _legacy_times(arrivals_s)
+    assert early_s.max() < 0.5 + 1e-9
+    assert np.abs(early_s[arrivals_s > 12.3]).max() < 0.02
+
+
+def test_legacy_times_begin_anew_with_a_connection(open_feed, monkeypatch) -> None:
+    tip, feed = open_feed()
+    now = time.monotonic()
+    monkeypatch.setattr(time, "monotonic", lambda: now)
+    for value in range(20):
+        now += 0.02
+        feed.legacy(value)
+    feed.report(LinkEvent("lost", "lost", NotConnected("lost")))
+    now += 5.0
+    feed.report(LinkEvent("connected", "connected"))
+    feed.legacy(20)
+    assert tip.latest().t == now
 
 
 def test_times_increase_over_a_restart(open_feed) -> None:
