@@ -206,7 +206,7 @@ class Fingertip:
                 self._hub.remove(queue)
 
         threading.Thread(target=call, name="lumitip-subscriber", daemon=True).start()
-        return lambda: queue.cancel(FingertipClosed("the subscription was stopped"))
+        return lambda: self._hub.remove(queue)
 
     @property
     def layout(self) -> Layout:

@@ -260,9 +260,10 @@ def test_diagnostics_tell_how_the_fingertip_is(make_node: Make) -> None:
         (status,) = node.published["/diagnostics"][-1].status
         return status.level, status.message
 
-    node = make_node(url="twin://edge", estimate=False, stale_s=5.0)
+    node = make_node(url="twin://empty", estimate=False, stale_s=5.0)
     assert diagnosed(node) == (b"\3", "not configured")
     node.on_configure(None)
+    assert node.services["~/tare"]().success
     node.on_activate(None)
     wait_for(node, "~/values", 3)
     assert diagnosed(node) == (b"\0", "frames arrive")

@@ -1,8 +1,8 @@
 """The lifecycle node `fingertip`.
 
-Configured, it is connected; active, it publishes every frame. A link that has failed for good is
-logged as fatal, is an error in `/diagnostics`, and ends the process with exit code 1, so that a
-launch file can start it anew.
+Configured, it is connected; active, it publishes the frames, and only the newest ones while it is
+too slow for all (`pace`). A link that has failed for good is logged as fatal, is an error in
+`/diagnostics`, and ends the process with exit code 1, so that a launch file can start it anew.
 """
 
 import sys
@@ -24,10 +24,12 @@ from visualization_msgs.msg import MarkerArray
 from lumitip import Fingertip, Frame, LumitipError
 from lumitip.estimation import PoseEstimator
 from lumitip.links.base import LinkEvent
+from lumitip.links.url import Url
 from lumitip.processing import Tracker
 from lumitip.view.drawn import ESTIMATE, PUBLISHED, borders
 from lumitip.view.pose import described, reach_of
 from lumitip_ros import health, markers, messages
+from lumitip_ros.pace import Pace, Published
 
 PARAMETERS: dict[str, str | bool | float] = {
     "url": "twin://demo",
@@ -54,7 +56,10 @@ class FingertipNode(LifecycleNode):
             self.declare_parameter(name, default)
         self._tip: Fingertip | None = None
         self._stop: Callable[[], None] | None = None
+        self._pace: Pace | None = None
+        self._published = Published()
         self._failed = self._refused = ""
+        self._recorded = False
         self._marked_s = float("-inf")
         sensor = qos_profile_sensor_data
         self._values = self.create_lifecycle_publisher(Values, "~/values", sensor)
@@ -77,10 +82,9 @@ class FingertipNode(LifecycleNode):
     def on_configure(self, _: State) -> TransitionCallbackReturn:
         """Connect; without success the node stays unconfigured."""
         self._failed = self._refused = ""
+        self._published = Published()
         try:
-            self._tip = Fingertip.open(
-                self._text("url"), self._text("layout") or None, on_event=self._on_event
-            )
+            self._tip = self._open()
             self._track, self._pose = Tracker(self._tip.layout), None
             if self.get_parameter("estimate").value:
                 self._pose = self._estimator(self._tip)
@@ -97,7 +101,9 @@ class FingertipNode(LifecycleNode):
         """Publish from now on."""
         result = super().on_activate(state)
         if self._tip is not None:
-            self._stop = self._tip.subscribe(self._publish)
+            self._published.newest_s = time.monotonic()
+            self._pace = Pace(self._publish, self._every, self._published)
+            self._stop = self._tip.subscribe(self._pace.put)
         return result
 
     def on_deactivate(self, state: State) -> TransitionCallbackReturn:
@@ -129,13 +135,27 @@ class FingertipNode(LifecycleNode):
     def diagnose(self) -> None:
         """Publish the state of the fingertip."""
         name, stale_s = self.get_fully_qualified_name(), self._number("stale_s")
-        status = health.status(name, self._tip, self._failed, self._refused, stale_s)
+        status = health.status(
+            name, self._tip, self._failed, self._refused, stale_s, self._published, self._recorded
+        )
         stamp = self.get_clock().now().to_msg()
         self._diagnostics.publish(health.array(status, stamp))
 
     def wait_until_received(self) -> None:
         """Wait until the last diagnostics have been received, for at most half a second."""
         self._diagnostics.wait_for_all_acked(Duration(seconds=_SENDING_S))
+
+    def _open(self) -> Fingertip:
+        """Connect; a recording does not play before the node is active."""
+        url = self._text("url")
+        address = Url.parse(url)
+        self._recorded = address.scheme == "replay"
+        # At speed 0 a recording waits for this node, so every frame can be published.
+        self._every = self._recorded and address.number("speed", 1.0, 0.0, 1000.0) == 0.0
+        layout = self._text("layout") or None
+        if self._every:
+            return Fingertip.open(url, layout, buffer=1, on_event=self._on_event)
+        return Fingertip.open(url, layout, on_event=self._on_event)
 
     def _estimator(self, tip: Fingertip) -> PoseEstimator:
         try:
@@ -148,10 +168,13 @@ class FingertipNode(LifecycleNode):
         except LumitipError as error:
             raise LumitipError(f"{error}. The parameter estimate: false does without") from error
 
-    def _publish(self, frame: Frame) -> None:
-        """Publish a frame; on a thread of the fingertip, which publishers may be used from."""
+    def _publish(self, frame: Frame, arrival_s: float) -> None:
+        """Publish a frame; on the thread of `Pace`, which publishers may be used from."""
         try:
             self._publish_all(frame)
+            self._published.number += 1
+            # The times of a recording are those of another clock.
+            self._published.newest_s = arrival_s if self._recorded else min(frame.t, arrival_s)
         except Exception as error:  # noqa: BLE001 - the thread would end without a word
             if rclpy.ok():  # else publishers are gone: the process ends
                 self._fail(f"a frame could not be published: {error!r}")
@@ -210,7 +233,9 @@ class FingertipNode(LifecycleNode):
     def _pause(self) -> None:
         if self._stop:
             self._stop()
-        self._stop = None
+        if self._pace:
+            self._pace.stop()
+        self._stop = self._pace = self._published.newest_s = None
 
     def _close(self) -> None:
         self._pause()
