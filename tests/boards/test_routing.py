@@ -104,6 +104,15 @@ def test_another_pressure_is_tried_where_nets_find_no_room(
     assert second.iterations > routing.iterations
 
 
+def test_nets_are_routed_in_the_other_order_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    backwards = [attempt for attempt in router.ATTEMPTS if attempt[0].backwards]
+    assert backwards
+    monkeypatch.setattr(router, "ATTEMPTS", backwards)
+    placement = small.crossing()
+    faults = verify(BoardModel(placement, route(placement), fills=()))
+    assert not faults, summary(faults)
+
+
 def test_tracks_lie_side_by_side_on_the_grid(crossing: tuple[Placement, Routing]) -> None:
     rules = Rules.of(crossing[0])
     assert rules.pitch_mm == 0.2  # tracks of 0.2 mm with gaps of 0.2 mm
