@@ -83,7 +83,7 @@ def main(out: Path, integrated: Path, flex: Path) -> None:
     _board(flex / "boards/receiver/receiver_front.png", "flex_board.png")
     shutil.copy(out / "wiring/wiring.svg", IMAGES)
     shutil.copy(out / "assembly/system.svg", IMAGES)
-    _pages(pypdfium2.PdfDocument(out / "manual/manual.pdf"), (0, 12, 16))
+    _pages(pypdfium2.PdfDocument(out / "manual/manual.pdf"), (0, 11, 16))
     draw_glb(out / "assembly/assembly.glb", IMAGES / "assembly.png")
 
 

@@ -43,7 +43,7 @@ _GAP = 6 * mm  # between pictures beside each other
 _PAIR_HIGH = 85 * mm
 _COLUMNS = ((1, 1), (2, 4), (3, 1000))
 """How many pictures of a paragraph stand in a row, up to how many."""
-_SHARES = (1.0, 0.9, 0.8)  # of a drawing, where that saves a page
+_SHARES = (1.0, 0.9, 0.8, 0.7)  # of a drawing, where that saves a page
 _DPI = 200
 _EMPTY = 0.35  # of a page that the next step then begins on
 _WHOLE_ROWS = 14  # of a table that is not parted between pages

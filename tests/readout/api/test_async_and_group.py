@@ -146,7 +146,7 @@ def test_the_newest_moment_of_a_group_queues_nothing(open_feed) -> None:
     moment = group.wait_latest(1.0)
     assert (moment["left"].raw[0], moment["right"].raw[0]) == (4, 14)
     left.packet(5)
-    with pytest.raises(LinkTimeout, match=r"^right: no frame in 0\.05 s"):
+    with pytest.raises(LinkTimeout, match=r"^right: no frame in 0\.0\d* s"):
         group.wait_latest(0.05)
     sent = threading.Timer(0.05, lambda: (right.packet(15), left.packet(7)))
     left.packet(6)

@@ -166,7 +166,7 @@ def test_where_the_arm_fails_all_is_closed(make_robot: Make, tmp_path: Path, lat
         robot.disconnect()
     assert not robot.is_connected and not robot.robot.is_connected
     assert links() == []
-    assert len(list(Reader(tmp_path / "left.mcap"))) > 0  # it is complete
+    list(Reader(tmp_path / "left.mcap"))  # it is complete, or raises
 
 
 def test_a_silent_finger_closes_all(make_robot: Make) -> None:
