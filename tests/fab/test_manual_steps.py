@@ -1,5 +1,7 @@
 """The words of the manual's steps: needs, signs, order, names of things, tools and parts."""
 
+import csv
+import math
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -82,6 +84,50 @@ def test_heat_and_spare_parts_are_named_where_boards_are_made(outputs: Path) -> 
     assert f"Joints reach {joint}, and the board of FR-4 bears {limit}" in boards
     cells = sum(part.kind == "led" for part in design.emitter.parts)
     assert f"({cells} LEDs, {cells} photodetectors) all go onto the boards" in boards
+
+
+def test_parts_without_a_number_are_named_with_what_to_do(outputs: Path) -> None:
+    boards = " ".join(chapter(outputs, "Boards").split())
+    without = set()
+    for board in ("emitter", "receiver", "breakout", "flange"):
+        path = outputs / f"boards/{board}/order/jlcpcb_{board}_bom.csv"
+        with path.open(encoding="utf-8") as file:
+            rows = [*csv.reader(file)]
+        number = next(i for i, head in enumerate(rows[0]) if "LCSC" in head or "JLCPCB" in head)
+        without |= {board for row in rows[1:] if not row[number]}
+    assert "emitter" in without, "of the published LED no number is known"
+    found = re.search(r"No number of JLCPCB's distributor is known for (.*?): buy", boards)
+    assert found and read_design(outputs / "design.json").packages.led_name in found[1]
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_cells_are_counted_as_the_parts_but_from_0(
+    built: Callable[[str], Path], preset: str
+) -> None:
+    folder = built(preset)
+    assert "cell 0 is D1 and Q1, cell 1 is D2 and Q2" in plain(folder)
+    for finger, letter in zip(read_design(folder / "design.json").fingers, "DQ", strict=True):
+        parts = {part.name: part for part in finger.parts}
+        for number, (x_mm, y_mm) in enumerate(finger.cells, 1):
+            part = parts[f"{letter}{number}"]
+            assert math.hypot(part.x_mm - x_mm, part.y_mm - y_mm) < 1.0
+
+
+def test_the_windows_that_are_closed_are_those_of_the_finger_that_has_them(outputs: Path) -> None:
+    design = read_design(outputs / "design.json")
+    assert [bool(finger.reliefs) for finger in design.fingers] == [True, False]
+    board = " ".join(chapter(outputs, "Put the board in").split())
+    assert "On the emitter, close every window on the back" in board
+    assert "but not the wire notch" in board
+    assert "and all tape off" in " ".join(chapter(outputs, "Take the finger out").split())
+
+
+def test_faces_that_lean_touch_near_the_tip_first(outputs: Path) -> None:
+    design = read_design(outputs / "design.json")
+    assert design.mount.tilt_deg > 0
+    assert "the faces touch near the tip first" in " ".join(chapter(outputs, "Mount").split())
+    upright = replace(design, mount=replace(design.mount, tilt_deg=0.0))
+    assert "both faces are parallel" in mounting(upright)
 
 
 def test_how_long_the_silicone_is_worked_and_how_a_skin_comes_off(outputs: Path) -> None:

@@ -141,7 +141,11 @@ def _unplaced(files: Files) -> str:
         for row in files.facts(path).get("parts", ())
         if not row["lcsc"]
     ]
-    parts = dict.fromkeys(f"{row['value']} ({row['manufacturer']} {row['part']})" for row in rows)
+    parts = dict.fromkeys(
+        f"{row['manufacturer']} {row['part']}"
+        + f" ({row['value']})" * (row["value"] != row["part"])
+        for row in rows
+    )
     return _text("unplaced", parts=as_written(listed(list(parts)))) + "\n" if parts else ""
 
 
