@@ -101,8 +101,8 @@ class Fingertip:
         """The next frame, in order, within `timeout` (s); `None` waits without limit.
 
         The first call starts the buffer. Threads that call `read` share its frames. If frames
-        wait for more than half a second, a warning is logged once: use `wait_latest` where only
-        the newest matters.
+        wait for more than half a second, a warning is logged, and again whenever the delay has
+        doubled: use `wait_latest` where only the newest matters.
 
         Raises:
             LinkTimeout: if no frame came in time; reading may go on, also while the link is cut.

@@ -6,11 +6,13 @@ from pathlib import Path
 from xml.etree import ElementTree as XmlTree
 
 import numpy as np
+import pypdfium2
 import pytest
 
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Flange
+from lumitip_fab.docs.sheet import pdf_sheets
 from lumitip_fab.scenes.contacts_view import SCALE, contacts_view
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -81,3 +83,27 @@ def test_a_mirrored_map_is_another_drawing(flange: Flange) -> None:
     contacts = tuple(dataclasses.replace(c, at=(c.at[0], -c.at[1])) for c in flange.contacts)
     shown = _shown(contacts_view(dataclasses.replace(flange, contacts=contacts)))
     assert np.sign(shown["3", "24V"][1]) == -1
+
+
+@pytest.mark.parametrize("words", range(500, 800, 60))
+def test_a_page_of_the_manual_shows_it_in_true_size(flange: Flange, words: int) -> None:
+    """However full the page is: other drawings shrink where that saves a page."""
+    drawing = contacts_view(flange)
+    root = XmlTree.fromstring(drawing)
+    rows = [float(e.attrib["y"]) for e in root.iter(f"{SVG}text") if e.text == "GND"]
+    text = f"# A\n\n## B\n\n![c](a.svg)\n\n{'words ' * words}\n"
+    page = pypdfium2.PdfDocument(pdf_sheets("A", text, _Drawing(drawing)))[0].get_textpage()
+    letters = page.get_text_range()
+    shown = [page.get_charbox(found.start())[1] for found in re.finditer("GND(?!\\w)", letters)]
+    shown_mm = (max(shown) - min(shown)) * 25.4 / 72
+    assert shown_mm == pytest.approx(max(rows) - min(rows), abs=0.2)
+
+
+class _Drawing:
+    """One file."""
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+
+    def read(self, _: str) -> bytes:
+        return self._text.encode()

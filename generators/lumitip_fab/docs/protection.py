@@ -13,10 +13,12 @@ ESD, TVS, FUSE = "esd diode", "tvs diode", "fuse"
 def protection_note(design: Design) -> str:
     """Paragraphs on ESD diodes with their resistors, and on the TVS diode with its fuse; empty
     without any."""
-    return "".join(f"\n\n{text}" for board in design.auxiliary_boards for text in _of(board))
+    return "".join(
+        f"\n\n{text}" for board in design.auxiliary_boards for text in _of(board, design)
+    )
 
 
-def _of(board: AuxiliaryBoard) -> Iterator[str]:
+def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
     kinds = {kind: [c for c in board.components if c.kind == kind] for kind in (ESD, TVS, FUSE)}
     if diodes := kinds[ESD]:
         lines = {net for diode in diodes for _, net in diode.nets} - {*board.supplies}
@@ -29,7 +31,9 @@ def _of(board: AuxiliaryBoard) -> Iterator[str]:
         yield _text("protected_esd", board=board.name, diodes=_references(diodes), limited=limited)
     for part in kinds[TVS]:
         melts = "".join(_text("protected_fuse", fuse=fuse) for fuse in kinds[FUSE])
-        where = 'its test (step "Flange")' if board.name == "flange" else "the first test"
+        # The flange's board has a test of its own, after that of the fingers if they are not on it.
+        later = board.name == "flange" and len(design.auxiliary_boards) > 1
+        where = 'its test (step "Flange")' if later else "the first test"
         yield _text("protected_tvs", board=board.name, part=part, melts=melts, where=where)
 
 

@@ -2,6 +2,7 @@
 
 import io
 import math
+import re
 from collections.abc import Iterator
 from html import escape
 from itertools import pairwise
@@ -45,6 +46,8 @@ _COLUMNS = ((1, 1), (2, 4), (3, 1000))
 """How many pictures of a paragraph stand in a row, up to how many."""
 _SHARES = (1.0, 0.9, 0.8, 0.7)  # of a drawing, where that saves a page
 _DPI = 200
+_TRUE_SIZE = re.compile(rb'^<svg [^>]*data-scale="1"')
+"""The beginning of a drawing that a print of its page is measured by."""
 _EMPTY = 0.35  # of a page that the next step then begins on
 _WHOLE_ROWS = 14  # of a table that is not parted between pages
 _LETTER, _PADDING = 4.9, 18.0  # width of a letter of a cell's text, and what is left beside it
@@ -210,10 +213,12 @@ def _paragraph(token: Token, files: Files, share: float) -> Iterator[Flowable]:
 def _picture(path: str, files: Files, width: float, high: float, share: float) -> Flowable:
     """A drawing stays a drawing, at most in its own size; a picture of pixels stays one."""
     if path.endswith(".svg"):
-        drawing = svg2rlg(io.BytesIO(files.read(path)))
+        data = files.read(path)
+        drawing = svg2rlg(io.BytesIO(data))
         if drawing.width > _WIDE * _WIDTH:
             high = max(high, _WIDE_HIGH)
-        scale = share * min(1.0, width / drawing.width, high / drawing.height)
+        smaller = 1.0 if _TRUE_SIZE.search(data) else share
+        scale = smaller * min(1.0, width / drawing.width, high / drawing.height)
         drawing.scale(scale, scale)
         drawing.width, drawing.height = drawing.width * scale, drawing.height * scale
         drawing.hAlign = "CENTER"

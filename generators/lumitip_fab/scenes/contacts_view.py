@@ -41,7 +41,7 @@ def contacts_view(flange: Flange) -> str:
     sheet.dot(pin_x, pin_y)
     sheet.words(right + 1.5, pin_y - 1.2, "locating pin", "detail", "start")
     sheet.cover(right + _WORDS_MM, pin_y)
-    return sheet.svg({})
+    return sheet.svg({"data-scale": SCALE})
 
 
 def _labelled(contacts: tuple[ToolContact, ...]) -> Iterator[tuple[ToolContact, float]]:

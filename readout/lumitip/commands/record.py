@@ -23,7 +23,6 @@ _SILENT_S = 1.0
 
 def run(options: argparse.Namespace) -> int:
     """Record until Ctrl-C or a limit."""
-    from lumitip.errors import LumitipError
     from lumitip.recording import RecordingError, Writer
 
     if options.file.suffix != ".mcap":
@@ -44,17 +43,16 @@ def run(options: argparse.Namespace) -> int:
                     f"{tip.device_id}: recording to {options.file}{of} (Ctrl-C ends it)", flush=True
                 )
                 _record(tip, writer, options, interrupted, silence)
-        except LumitipError:
+        finally:
             if not writer.frames:
                 options.file.unlink(missing_ok=True)  # so that the next try has its name
-            raise
         dropped = tip.stats.dropped
     counts = dropped.items() if dropped else ()
     lost = "".join(f", {n} lost ({cause})" for cause, n in counts if n)
     print(f"{writer.frames} frames recorded{lost}{silence.summary()}")
     if interrupted.by == signal.SIGINT:
         return INTERRUPTED
-    return 1 if silence.lasts else 0
+    return 1 if silence.lasts or not writer.frames else 0
 
 
 def _record(
@@ -74,7 +72,8 @@ def _record(
         try:
             frame = tip.read(timeout=min(left, _POLL_S))
         except LinkTimeout as error:
-            silence.goes_on(str(error).partition(": ")[2])  # the link reconnects
+            gap = options.url.lower().startswith("replay:")
+            silence.goes_on("the recording has a gap" if gap else str(error).partition(": ")[2])
         except EndOfRecording:
             return
         else:

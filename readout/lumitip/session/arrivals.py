@@ -11,7 +11,8 @@ class ArrivalTime:
     """Spaces the frames that arrive in one bunch by the mean period. Not thread-safe.
 
     Nothing says whether frames were late or lost before a bunch. So they are taken for late: times
-    are up to 0.5 s before the arrival, and that is over a few frames later.
+    are up to 0.5 s before the arrival, and that is over some ten frames later. Frames that come ten
+    times a second or slower have the time of their arrival.
     """
 
     def __init__(self) -> None:
@@ -38,7 +39,7 @@ class ArrivalTime:
                 self._learn()
                 self._begun, self._before_s, self._frames = t_host, t_host - self._begun, 0
             t = t_host
-            if self._period_s is not None:
+            if self._period_s is not None and self._period_s < _MOST_PERIOD_S:
                 t = max(self._t + self._period_s + pull_s, t_host - _MOST_LAG_S)
                 t = min(t, t_host + self._period_s)
         self._frames += 1

@@ -173,7 +173,7 @@ class Hub:
             ArgumentError: if the age is wrong.
         """
         max_age_s, newest = seconds(max_age_s, "max_age_s"), self._newest
-        if newest is None:
+        if not self._wanted:
             self._ask()
         if self._over and not isinstance(self._over, EndOfRecording):
             raise self._over.with_traceback(None)
@@ -225,7 +225,8 @@ class Hub:
         last = frames[-1]
         recorded = isinstance(arrival.content, RecordedFrame)
         with self._changed:
-            self._newest = last, arrival.t_host if recorded else min(last.t, last.t_host)
+            as_arrived = recorded or last.t_device is None
+            self._newest = last, arrival.t_host if as_arrived else min(last.t, last.t_host)
             self._wanted = False
             self._changed.notify_all()
         for queue in self._queues:

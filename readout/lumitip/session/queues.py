@@ -38,7 +38,7 @@ class FrameQueue:
         self._notify = notify
         self._closed: LinkError | None = None
         self._waits = self._idle = False
-        self._warns = counted
+        self._warns = counted  # of the frames that came last
         self._warns_at_s = BEHIND_S
 
     def put(self, frames: Sequence[Frame], wait: bool = False) -> int:
@@ -54,7 +54,7 @@ class FrameQueue:
                 self._idle = not self._changed.wait(PATIENCE_S)
             before, now_s = len(self._frames), time.monotonic()
             self._frames.extend((frame, now_s) for frame in frames)
-            self._warns = self._warns and not wait  # a recording waits for its reader
+            self._warns = self.counted and not wait  # a recording waits for its reader
             lost = before + len(frames) - len(self._frames)
             self._changed.notify_all()
         if self._notify:

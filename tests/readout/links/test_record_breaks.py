@@ -64,6 +64,14 @@ def test_a_recording_that_ends_silent_is_no_success(
     assert len(list(Reader(tmp_path / "run.mcap"))) == 2
 
 
+@pytest.mark.parametrize("seconds", [0.4, 1.5])
+def test_a_device_that_never_sends_leaves_no_file_behind(
+    line: Line, layout_file: Path, tmp_path: Path, seconds: float
+) -> None:
+    assert _record(line, layout_file, tmp_path / "run.mcap", seconds) == 1
+    assert not (tmp_path / "run.mcap").exists()
+
+
 def test_another_device_leaves_no_file_behind(
     line: Line, device, layout_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

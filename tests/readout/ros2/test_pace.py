@@ -170,7 +170,7 @@ def test_a_recording_plays_from_its_first_frame_once_the_node_is_active(
     node = make_node(url=f"replay://{path}{speed}")
     node.on_configure(None)
     time.sleep(0.3)
-    assert diagnosed(node)[:2] == (b"\0", "the recording plays while the node is active")
+    assert diagnosed(node)[:2] == (b"\0", "the recording begins once the node is active")
     assert not node.failure, "it does not play yet"
     node.on_activate(None)
 

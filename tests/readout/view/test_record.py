@@ -196,7 +196,7 @@ def test_player_refuses_what_it_cannot_play(tmp_path: Path, recording: Path) -> 
         Finger.open(f"replay://{tmp_path / 'none.mcap'}")
     broken = tmp_path / "broken.mcap"
     broken.write_bytes(b"not a recording")
-    with pytest.raises(LumitipError, match="not a recording"):
+    with pytest.raises(LumitipError, match="no MCAP recording"):
         Finger.open(f"replay://{broken}")
     with pytest.raises(LumitipError, match="speed"):
         Finger.open(f"replay://{recording}?speed=1000")

@@ -62,8 +62,8 @@ def _level(
         return DiagnosticStatus.ERROR, failed
     if not tip.connected:
         return DiagnosticStatus.WARN, "the link is cut, reconnecting"
-    if recorded and published.newest_s is None:
-        return DiagnosticStatus.OK, "the recording plays while the node is active"
+    if recorded and not published.number:
+        return DiagnosticStatus.OK, "the recording begins once the node is active"
     try:
         tip.latest(stale_s)
     except StaleFrame as error:
