@@ -96,6 +96,7 @@ def test_states_that_nobody_reads_do_not_stop_it(peer: Peer) -> None:
         time.sleep(5.0)
         assert not peer.of("program ended")
         program.send_signal(signal.SIGCONT)
+        time.sleep(0.5)  # a thread that stands may not be woken: another one would get the signal
         program.send_signal(signal.SIGINT)
         assert peer.wait("program ended")["why"] == "script"
 
