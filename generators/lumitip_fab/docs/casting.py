@@ -154,9 +154,9 @@ def _held(design: Design, fingers: tuple[Finger, ...]) -> str:
     taped, tape = "", ""
     if opened := [finger.name for finger in fingers if open_back(design, finger)]:
         number = 4 if sunk else 3
-        where = "C" if len(opened) == len(fingers) else f"On the {opened[0]}, c"
+        close = "Close" if len(opened) == len(fingers) else f"On the {opened[0]}, close"
         taped = _text(
-            "taped", number=number, where=where, tape=mould.tape, openings=openings, bare=bare
+            "taped", number=number, close=close, tape=mould.tape, openings=openings, bare=bare
         )
         tape = f"{mould.tape}, "
     name = "pocket" if sunk else "plate"

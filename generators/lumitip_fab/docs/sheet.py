@@ -110,13 +110,16 @@ def _kept(tokens: list[Token], files: Files) -> list[Flowable]:
     if not any(child.type == "image" for token in tokens for child in token.children or []):
         return list(_flowables(tokens, files))
     steps = [list(_flowables(tokens, files, share)) for share in _SHARES]
-    found = [(math.ceil(high / _PAGE_HIGH), high) for high in map(_high, steps)]
-    fewest = min(pages for pages, _ in found)
-    if fewest == 1:
-        return [
-            KeepTogether(next(s for s, (pages, _) in zip(steps, found, strict=True) if pages == 1))
-        ]
-    return [_Long([(high, s) for s, (n, high) in zip(steps, found, strict=True) if n == fewest])]
+    choices = [(_high(step), step) for step in steps]
+    fewest = min(map(_pages, choices))
+    choices = [choice for choice in choices if _pages(choice) == fewest]
+    return [KeepTogether(choices[0][1])] if fewest == 1 else [_Long(choices)]
+
+
+def _pages(choice: tuple[float, list[Flowable]]) -> int:
+    """How many pages a step takes that begins on a new one."""
+    pages: int = math.ceil(choice[0] / _PAGE_HIGH)
+    return pages
 
 
 class _Long(Flowable):  # type: ignore[misc]

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _POLL_S = 0.2  # longest reaction time to Ctrl-C
 _SILENT_S = 1.0
-"""Without a frame for so long, the user is told."""
+"""Without a frame for so long, a message is printed."""
 
 
 def run(options: argparse.Namespace) -> int:

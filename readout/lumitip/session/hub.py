@@ -173,8 +173,7 @@ class Hub:
             ArgumentError: if the age is wrong.
         """
         max_age_s, newest = seconds(max_age_s, "max_age_s"), self._newest
-        if not self._wanted:
-            self._ask()
+        self._ask()
         if self._over and not isinstance(self._over, EndOfRecording):
             raise self._over.with_traceback(None)
         if max_age_s is not None:
@@ -185,9 +184,9 @@ class Hub:
         return newest[0] if newest else None
 
     def _ask(self) -> None:
-        """Let a recording that waits for its first reader begin."""
-        with self._changed:
-            if not self._wanted:
+        """Let a recording that waits for a reader go on."""
+        if not self._wanted:
+            with self._changed:
                 self._wanted = True
                 self._changed.notify_all()
 

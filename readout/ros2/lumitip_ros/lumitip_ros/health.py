@@ -1,6 +1,7 @@
 """Diagnostics of a fingertip for `/diagnostics`."""
 
 import time
+from dataclasses import dataclass
 
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -10,31 +11,35 @@ from lumitip.errors import LinkError, StaleFrame
 from lumitip_ros.pace import Published
 
 
-def status(
-    name: str,
-    tip: Fingertip | None,
-    failed: str,
-    refused: str,
-    stale_s: float,
-    published: Published,
-    recorded: bool,
-) -> DiagnosticStatus:
+@dataclass(frozen=True)
+class Condition:
+    """A node and its fingertip now."""
+
+    tip: Fingertip | None
+    """The open fingertip, if there is one."""
+    failed: str
+    """Why its link has failed for good; empty while it has not."""
+    refused: str
+    """Why the last attempt to configure the node failed; empty without."""
+    stale_s: float
+    """Age from which a frame is too old, received or published."""
+    published: Published
+    recorded: bool
+    """Whether the frames come from a recording, which begins once the node is active."""
+
+
+def status(name: str, now: Condition) -> DiagnosticStatus:
     """Level, text and figures of a fingertip.
 
     Args:
         name: of the node, with its namespace.
-        tip: the open fingertip, if there is one.
-        failed: why its link has failed for good; empty while it has not.
-        refused: why the last attempt to configure the node failed; empty without.
-        stale_s: age from which a frame is too old, received or published.
-        published: the published frames.
-        recorded: whether they come from a recording, which begins once the node is active.
+        now: of this node.
     """
-    level, text = _level(tip, failed, refused, stale_s, published, recorded)
+    level, text = _level(now)
     message = DiagnosticStatus(level=level, name=f"{name}: fingertip", message=text)
-    if tip is not None:
-        message.hardware_id = tip.device_id
-        figures = _figures(tip) | _published_figures(published)
+    if now.tip is not None:
+        message.hardware_id = now.tip.device_id
+        figures = _figures(now.tip) | _published_figures(now.published)
         message.values = [KeyValue(key=key, value=text) for key, text in figures.items()]
     return message
 
@@ -46,23 +51,17 @@ def array(status: DiagnosticStatus, stamp: Time) -> DiagnosticArray:
     return message
 
 
-def _level(
-    tip: Fingertip | None,
-    failed: str,
-    refused: str,
-    stale_s: float,
-    published: Published,
-    recorded: bool,
-) -> tuple[bytes, str]:
+def _level(now: Condition) -> tuple[bytes, str]:
+    tip, published, stale_s = now.tip, now.published, now.stale_s
     if tip is None:
-        if refused:
-            return DiagnosticStatus.ERROR, refused
+        if now.refused:
+            return DiagnosticStatus.ERROR, now.refused
         return DiagnosticStatus.STALE, "not configured"
-    if failed:
-        return DiagnosticStatus.ERROR, failed
+    if now.failed:
+        return DiagnosticStatus.ERROR, now.failed
     if not tip.connected:
         return DiagnosticStatus.WARN, "the link is cut, reconnecting"
-    if recorded and not published.number:
+    if now.recorded and not published.number:
         return DiagnosticStatus.OK, "the recording begins once the node is active"
     try:
         tip.latest(stale_s)

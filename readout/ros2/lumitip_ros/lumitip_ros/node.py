@@ -135,9 +135,10 @@ class FingertipNode(LifecycleNode):
     def diagnose(self) -> None:
         """Publish the state of the fingertip."""
         name, stale_s = self.get_fully_qualified_name(), self._number("stale_s")
-        status = health.status(
-            name, self._tip, self._failed, self._refused, stale_s, self._published, self._recorded
+        now = health.Condition(
+            self._tip, self._failed, self._refused, stale_s, self._published, self._recorded
         )
+        status = health.status(name, now)
         stamp = self.get_clock().now().to_msg()
         self._diagnostics.publish(health.array(status, stamp))
 
