@@ -16,10 +16,15 @@ REJECTED = 2
 
 def run() -> None:
     """The whole process of a command."""
-    from lumitip.interrupt import leave_on_interrupt
+    import atexit
+
+    from lumitip.interrupt import leave_on_interrupt, leave_with_daemons
 
     leave_on_interrupt()
-    sys.exit(main())
+    status = 1
+    atexit.register(lambda: leave_with_daemons(status))  # the first one is called last
+    status = main()
+    sys.exit(status)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

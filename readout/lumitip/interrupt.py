@@ -1,4 +1,4 @@
-"""Ctrl-C (SIGINT) in a command: it ends without a traceback, with exit status 130.
+"""How a command ends. Ctrl-C (SIGINT): without a traceback, with exit status 130.
 
 Imports little: until `leave_on_interrupt` is called, Python answers Ctrl-C with a traceback.
 """
@@ -22,6 +22,23 @@ _IMPORT = "<frozen importlib._bootstrap>"
 def leave_on_interrupt() -> None:
     """Let SIGINT end the process at once. For the time without anything to clean up."""
     signal.signal(signal.SIGINT, _leave)
+
+
+def leave_with_daemons(status: int) -> None:
+    """End the process here if a daemon thread still runs; to be called last, by `atexit`.
+
+    Python would stop the thread where it next needs the interpreter. Within C++ code, which numpy
+    has, that aborts the process.
+    """
+    import contextlib
+    import threading
+
+    if not any(thread.daemon for thread in threading.enumerate()):
+        return
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(OSError, ValueError):
+            stream.flush()
+    os._exit(status)
 
 
 def _leave(_: int = 0, __: "FrameType | None" = None) -> None:
