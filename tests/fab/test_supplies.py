@@ -9,6 +9,7 @@ import pytest
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Bought
+from lumitip_fab.docs.bill import loose_parts
 from lumitip_fab.docs.orders import orders
 from lumitip_fab.docs.wiring import wiring_note
 
@@ -43,24 +44,39 @@ def test_each_wire_has_a_colour_of_the_set_or_a_mark(inputs: dict[str, Input], p
     assert (preset == "published") == (marked == "W3.3 white, marked pink")
 
 
+def test_parts_whose_mark_is_not_known_are_bought_loose_for_the_test(
+    inputs: dict[str, Input],
+) -> None:
+    design = derive(inputs["published"])
+    packages = design.packages
+    led, detector = loose_parts(design)
+    assert (led.part, detector.part) == ("15406085BA300", packages.photodetector.order_number)
+    assert (led.quantity, detector.quantity) == (2, 2)
+    assert None not in (led.price, detector.price)
+    known = packages.led.model_copy(update={"marked_confidence": "measured"})
+    measured = replace(design, packages=replace(packages, led=known))
+    assert [each.part for each in loose_parts(measured)] == [detector.part]
+
+
 LINES = ("GND", "CASING", "Von", "485+", "485-", "3V3_out", "485GND")
 BEHIND = ("REGULATED", "REGULATED", "SUPPLY", "SUPPLY", "GND", "GND", "GND")
 CLOSED = ("GND", "GND", "SUPPLY", *["NC"] * 7)
 
 
 @pytest.mark.parametrize(
-    ("preset", "changes", "sockets", "cable"),
+    ("preset", "changes", "sockets", "cable", "fuses"),
     [
-        ("published", {}, ["J2", "J3"], ["J2", "J3"]),
-        ("integrated", {}, ["J2", "J3"], ["J2", "J3"]),
-        ("published", {"flange.headers": (LINES, BEHIND)}, ["J2", "J3"], ["J2"]),
+        ("published", {}, ["J2", "J3"], ["J2", "J3"], [1]),
+        ("integrated", {}, ["J2", "J3"], ["J2", "J3"], [1]),
+        ("published", {"flange.headers": (LINES, BEHIND)}, ["J2", "J3"], ["J2"], []),
         (
             "published",
             {"flange.headers": (("GND",) * 7, BEHIND), "flange.signals": CLOSED},
             ["J3"],
             [],
+            [],
         ),
-        ("wsg50", {}, [], []),
+        ("wsg50", {}, [], [], []),
     ],
 )
 def test_the_grippers_own_cable_is_in_the_bill(
@@ -68,6 +84,7 @@ def test_the_grippers_own_cable_is_in_the_bill(
     changes: dict[str, Any],
     sockets: list[str],
     cable: list[str],
+    fuses: list[int],
     inputs: dict[str, Input],
     vary: Any,
 ) -> None:
@@ -78,6 +95,7 @@ def test_the_grippers_own_cable_is_in_the_bill(
     own = [p for p in pieces if p.item == "cable of the gripper"]
     assert [re.findall(r"J\d", p.where) for p in own] == [cable] * bool(cable)
     assert [(p.quantity, p.each) for p in own] == [(1, 25.0)] * bool(cable)
+    assert [p.quantity for p in pieces if p.pack == "gripper fuse"] == fuses
 
 
 def test_wires_of_two_sections_are_two_sets(inputs: dict[str, Input]) -> None:

@@ -70,7 +70,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     wrong = sorted({row.item for row in rows if row.group == "boards"} ^ boards)
     yield count("bom.boards", _FILE, wrong, "wrong boards")
     yield _prints(rows, grams)
-    yield _near("silicone", rows, "casting", cast, "g", "parts A and B of both casting notes")
+    cast += sum(design.mould.trial_g)
+    yield _near("silicone", rows, "casting", cast, "g", "both casting notes, and the trial")
     sheets = 0.0 if design.mask.route == "tpu" else 2.0
     yield _near("film", rows, "mask", sheets, "sheets", "one for each finger, unless it is printed")
     yield _near("wire", rows, "wiring", metres, "m", "of every wire in the list of cables")

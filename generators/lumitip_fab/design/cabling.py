@@ -172,6 +172,17 @@ def gripper_headers(auxiliary_boards: Iterable[AuxiliaryBoard]) -> list[str]:
     )
 
 
+def supplied_headers(auxiliary_boards: Iterable[AuxiliaryBoard]) -> list[str]:
+    """References of the flange's headers that have the robot's supply before the fuse, sorted."""
+    return sorted(
+        part.ref
+        for board in auxiliary_boards
+        if board.name == "flange"
+        for part in front_headers(board)
+        if any(net.endswith(INPUT_END) for _, net in part.nets)
+    )
+
+
 def front_headers(board: AuxiliaryBoard) -> list[Component]:
     """Headers of a board that cables are plugged into."""
     return [part for part in board.components if part.kind == "header" and part.side == "front"]

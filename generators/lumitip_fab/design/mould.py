@@ -82,6 +82,12 @@ class Mould:
     """Time until the glue is hard, where it meets the silicone; else 0."""
 
     @property
+    def trial_g(self) -> Point:
+        """Parts A and B to mix for a trial of a few drops: the smaller one is 1 g."""
+        a, b = (part / min(self.mix_ratio) for part in self.mix_ratio)
+        return a, b
+
+    @property
     def floor_mm(self) -> float:
         """The silicone's face over the bed: beside an insert, and on it."""
         return self.wall_mm + sum(insert.thickness_mm for insert in self.inserts)

@@ -83,8 +83,9 @@ def materials(design: Design, files: Files) -> Iterator[Bought]:
         where = f"{number} times, each {where}" if number > 1 else where
         yield Bought("prints", path, "", name, where, grams, purchase.unit_price(name), "g", name)
     mixes = [files.facts(path) for path in files.like("mould/*_casting.md")]
-    grams = round(sum(mix["part_a_g"] + mix["part_b_g"] for mix in mixes), 2)
-    where, title = "both fingers, with what stays in the cup", design.mould.silicone
+    grams = sum(mix["part_a_g"] + mix["part_b_g"] for mix in mixes) + sum(design.mould.trial_g)
+    grams, title = round(grams, 2), design.mould.silicone
+    where = "both fingers, with what stays in the cup, and the trial"
     yield _packed(purchase, "casting", purchase.silicone, title, where, grams, "g")
     if not printed:
         where = "a sheet of A4 for each finger"
@@ -100,6 +101,21 @@ def materials(design: Design, files: Files) -> Iterator[Bought]:
         item = f"stranded wire, {section:g} mm² (AWG {awg(section)})"
         used = round(length, 2)
         yield _packed(purchase, "wiring", "stranded wire", item, where, used, "m")
+
+
+TESTED = 2
+"""Loose parts of each kind whose marked terminal is to be tested before the boards are ordered."""
+
+
+def loose_parts(design: Design) -> Iterator[Bought]:
+    """LEDs and photodetectors for the test of their marked terminals: a PCB fab that places those
+    of the boards sends none."""
+    packages, where = design.packages, "test of the marked terminals, before the boards"
+    for kind, part in (("LED", packages.led), ("photodetector", packages.photodetector)):
+        if not part.mark_is_known:
+            item, number = f"{kind} {part.order_number}, loose", part.order_number
+            each = design.purchase.part_each(number)
+            yield Bought("supplies", item, part.manufacturer, number, where, TESTED, each)
 
 
 def _minutes(facts: Mapping[str, float], filament: Filament, design: Design) -> int:
@@ -142,6 +158,7 @@ def bill_of_materials(design: Design, files: Files) -> tuple[Artefact, ...]:
     lines = [
         *electronics(design, files),
         *materials(design, files),
+        *loose_parts(design),
         *_pieces(purchase, "supplies"),
         *_pieces(purchase, "fasteners"),
     ]

@@ -221,7 +221,7 @@ def _tried(design: Design) -> str:
 
 def _trial(mould: Mould) -> str:
     """Amounts for a few drops."""
-    a, b = (part / min(mould.mix_ratio) for part in mould.mix_ratio)
+    a, b = mould.trial_g
     return f"{a:g} g of part A with {b:g} g of part B, and stir it for three minutes"
 
 

@@ -8,7 +8,8 @@ from itertools import count
 from typing import Any
 
 from lumitip_fab.design import Design, Finger, Packages
-from lumitip_fab.design.cabling import awg
+from lumitip_fab.design.cabling import awg, supplied_headers
+from lumitip_fab.docs.bill import TESTED
 from lumitip_fab.docs.bring_up import first_test
 from lumitip_fab.docs.casting import (
     amounts_of_both,
@@ -32,8 +33,6 @@ from lumitip_fab.text import as_written, passage
 
 RUN_MIN, ACCEPT_MIN = 15, 10
 """How long calibration takes, and the test with the gauge card (assumed)."""
-SPARE = 2
-"""Parts of each kind whose polarity is tested, beyond those on the boards."""
 WEAR_GRASPS = 100
 """After about so many grasps the published sensor's silicone had worn above the LEDs."""
 _PROBE_V = 0.15  # less than at the working current: a diode test drives about 1 mA
@@ -77,13 +76,18 @@ def _bought(design: Design, files: Files) -> str:
     return _text(
         "bought",
         prices=as_written(bill["prices"]),
-        measured=_text("measured") if design.flanges else "",
+        measured=_text("measured", fused=_fused(design)) if design.flanges else "",
         lines=lines,
         total=money(bill["total"]),
         packs=packs,
         single=money(order["single"]),
         to_buy=money(order["total"]),
     )
+
+
+def _fused(design: Design) -> str:
+    """The fuse of the gripper's cable, where it starts at the robot's supply."""
+    return ", and a fuse for it" if supplied_headers(design.auxiliary_boards) else ""
 
 
 def _pack(line: dict[str, Any]) -> str:
@@ -181,7 +185,7 @@ def polarity_test(packages: Packages, fingers: tuple[Finger, ...]) -> str:
     parts = Counter(part.kind for finger in fingers for part in finger.parts)
     counted = f"{parts['led']} LEDs, {parts['photodetector']} photodetectors"
     tests_text = "".join(tests)
-    return _text("polarity", tests=tests_text, counted=counted, spare=SPARE) if tests else ""
+    return _text("polarity", tests=tests_text, counted=counted, tested=TESTED) if tests else ""
 
 
 def _wired(design: Design, files: Files) -> str:

@@ -23,7 +23,7 @@ from lumitip_fab.design import (
     Point,
     Stack,
 )
-from lumitip_fab.design.cabling import gripper_headers, plugged_headers
+from lumitip_fab.design.cabling import gripper_headers, plugged_headers, supplied_headers
 
 GLUE_FILM_MM = 0.1
 """Thin film of glue between board and floor, or pad and plate (assumed)."""
@@ -134,6 +134,8 @@ def _plugged(config: Input, of: Assembled) -> Iterator[Used]:
     if lines:
         where = f"from {', '.join(lines)} of the flange: its maker's, or wires for its current"
         yield Used("gripper cable", where, 1, "piece")
+    if supplied_headers(of.auxiliary_boards):
+        yield Used("gripper fuse", "supply wire of the gripper's cable", 1, "piece")
 
 
 def _cast(config: Input, of: Assembled) -> Iterator[Used]:
