@@ -1,8 +1,8 @@
-"""Markdown pages as tests read them: links, anchors, code and prose, by a CommonMark parser."""
+"""Markdown pages as tests read them: links, sections, code and prose, by a CommonMark parser."""
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 
@@ -40,18 +40,46 @@ def links(text: str) -> list[Link]:
     return found
 
 
-def anchors(text: str) -> set[str]:
-    """Anchors of the headings, as GitHub forms them: a repeated one has its number behind it."""
-    found: set[str] = set()
-    tokens = _PARSER.parse(text)
-    for opening, content in pairwise(tokens):
-        if opening.type != "heading_open":
-            continue
-        plain = "".join(part.content for part in content.children or ())
-        slug = re.sub(r"[^\w\- ]", "", plain.lower()).replace(" ", "-")
-        number = sum(1 for other in found if re.fullmatch(rf"{re.escape(slug)}(-\d+)?", other))
-        found.add(f"{slug}-{number}" if number else slug)
+@dataclass(frozen=True)
+class Section:
+    """All that stands between a heading and the next one, of whatever level."""
+
+    heading: str
+    anchor: str
+    texts: list[str] = field(default_factory=list)
+    """Paragraphs, items and cells of tables, without code, line breaks and addresses of links."""
+    rows: list[list[str]] = field(default_factory=list)
+    """Markdown of the cells of each row of its tables, without the headings of the columns."""
+
+
+def sections(text: str) -> list[Section]:
+    """The sections of a page, in order. Anchors are as GitHub forms them: a repeated one has its
+    number behind it."""
+    found: list[Section] = []
+    used: set[str] = set()
+    within = False
+    for opening, token in pairwise(_PARSER.parse(text)):
+        if opening.type == "heading_open":
+            plain = "".join(part.content for part in token.children or ())
+            slug = re.sub(r"[^\w\- ]", "", plain.lower()).replace(" ", "-")
+            number = sum(1 for other in used if re.fullmatch(rf"{re.escape(slug)}(-\d+)?", other))
+            found.append(Section(plain, f"{slug}-{number}" if number else slug))
+            used.add(found[-1].anchor)
+        elif token.type in ("tbody_open", "tbody_close"):
+            within = token.type == "tbody_open"
+        elif token.type == "tr_open" and within:
+            found[-1].rows.append([])
+        elif token.type == "inline" and found:
+            parts = (p.content if p.type == "text" else " " for p in token.children or ())
+            found[-1].texts.append("".join(parts).strip())
+            if within:
+                found[-1].rows[-1].append(token.content)
     return found
+
+
+def anchors(text: str) -> set[str]:
+    """Anchors of the headings."""
+    return {section.anchor for section in sections(text)}
 
 
 def broken_links(page: Path, text: str) -> list[str]:
