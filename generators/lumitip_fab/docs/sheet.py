@@ -1,7 +1,6 @@
 """The manual as a PDF on A4 set by reportlab: the same text."""
 
 import io
-import math
 import re
 from collections.abc import Iterator
 from html import escape
@@ -17,17 +16,15 @@ from reportlab.pdfgen.canvas import Canvas
 from reportlab.platypus import (
     Flowable,
     Image,
-    KeepTogether,
     LongTable,
-    PageBreak,
     Paragraph,
     SimpleDocTemplate,
     Table,
 )
-from reportlab.platypus.doctemplate import NullActionFlowable
 from svglib.svglib import svg2rlg
 
 from lumitip_fab.docs.page import markdown
+from lumitip_fab.docs.sheet_pages import MARGIN, MARGIN_HIGH, WIDTH, kept_step
 from lumitip_fab.docs.sheet_styles import BESIDE, BODY, CELL, FIGURE, HEADS, ITEM, LINES, SMALL
 from lumitip_fab.pipeline.artefact import Files
 from lumitip_fab.text import page_letters
@@ -35,9 +32,6 @@ from lumitip_fab.typeface import CODE, OF_HELVETICA, PLAIN, load_typeface
 
 rl_config.useA85 = 0  # streams as text take most of the time, and a quarter more room
 
-_MARGIN = 20 * mm
-_WIDTH = A4[0] - 2 * _MARGIN
-_PAGE_HIGH = A4[1] - 2 * 18 * mm - 12  # between the margins, less the frame's own padding
 _MOST_HIGH = 132 * mm  # of a drawing, which otherwise has its own size
 _WIDE, _WIDE_HIGH = 1.5, 170 * mm  # of the page: a drawing so wide has small words already
 _GAP = 6 * mm  # between pictures beside each other
@@ -48,7 +42,6 @@ _SHARES = (1.0, 0.9, 0.8, 0.7)  # of a drawing, where that saves a page
 _DPI = 200
 _TRUE_SIZE = re.compile(rb'^<svg [^>]*data-scale="1"')
 """The beginning of a drawing that a print of its page is measured by."""
-_EMPTY = 0.35  # of a page that the next step then begins on
 _WHOLE_ROWS = 14  # of a table that is not parted between pages
 _LETTER, _PADDING = 4.9, 18.0  # width of a letter of a cell's text, and what is left beside it
 
@@ -66,10 +59,10 @@ def pdf_sheets(name: str, text: str, files: Files) -> bytes:
     document = SimpleDocTemplate(
         buffer,
         pagesize=A4,
-        leftMargin=_MARGIN,
-        rightMargin=_MARGIN,
-        topMargin=18 * mm,
-        bottomMargin=18 * mm,
+        leftMargin=MARGIN,
+        rightMargin=MARGIN,
+        topMargin=MARGIN_HIGH,
+        bottomMargin=MARGIN_HIGH,
         title=name,
         author="lumitip-fab",
         creator="lumitip-fab",
@@ -80,8 +73,8 @@ def pdf_sheets(name: str, text: str, files: Files) -> bytes:
     def foot(canvas: Canvas, _document: object) -> None:
         canvas.setFont(PLAIN, 7.1)
         canvas.setFillGray(0.45)
-        canvas.drawString(_MARGIN, 10 * mm, page_letters(name))
-        canvas.drawRightString(A4[0] - _MARGIN, 10 * mm, str(canvas.getPageNumber()))
+        canvas.drawString(MARGIN, 10 * mm, page_letters(name))
+        canvas.drawRightString(A4[0] - MARGIN, 10 * mm, str(canvas.getPageNumber()))
 
     tokens = markdown().parse(text)
     _set_letters(tokens)
@@ -109,46 +102,7 @@ def _kept(tokens: list[Token], files: Files) -> list[Flowable]:
     fewest, if need be with smaller drawings; one without begins below the step before it."""
     if not any(child.type == "image" for token in tokens for child in token.children or []):
         return list(_flowables(tokens, files))
-    steps = [list(_flowables(tokens, files, share)) for share in _SHARES]
-    choices = [(_high(step), step) for step in steps]
-    fewest = min(map(_pages, choices))
-    choices = [choice for choice in choices if _pages(choice) == fewest]
-    return [KeepTogether(choices[0][1])] if fewest == 1 else [_Long(choices)]
-
-
-def _pages(choice: tuple[float, list[Flowable]]) -> int:
-    """How many pages a step takes that begins on a new one."""
-    pages: int = math.ceil(choice[0] / _PAGE_HIGH)
-    return pages
-
-
-class _Long(Flowable):  # type: ignore[misc]
-    """A step of more than one page. It begins on the page of the step before it where it then takes
-    no page more, with the largest drawings that do so, or where much of that page is empty; else on
-    a new one."""
-
-    def __init__(self, choices: list[tuple[float, list[Flowable]]]) -> None:
-        super().__init__()
-        self._choices = choices
-
-    def wrap(self, width: float, _high: float) -> tuple[float, float]:
-        """Higher than any page: it is always split."""
-        return width, math.inf
-
-    def split(self, _width: float, left: float) -> list[Flowable]:
-        """The step with drawings for the room that is left."""
-        for high, step in self._choices:
-            if high % _PAGE_HIGH <= left or left > _EMPTY * _PAGE_HIGH:
-                # Before a heading something else must come, or it is not kept with its drawing.
-                return [NullActionFlowable(), *step]
-        return [PageBreak(), *self._choices[0][1]]
-
-
-def _high(step: list[Flowable]) -> float:
-    """Height of a step on one page."""
-    measured = Canvas(io.BytesIO())
-    heights = [piece.wrapOn(measured, _WIDTH, _PAGE_HIGH)[1] for piece in step]
-    return float(sum(heights) + sum(p.getSpaceBefore() + p.getSpaceAfter() for p in step))
+    return kept_step([list(_flowables(tokens, files, share)) for share in _SHARES])
 
 
 def _flowables(tokens: list[Token], files: Files, share: float = 1.0) -> Iterator[Flowable]:
@@ -198,7 +152,7 @@ def _paragraph(token: Token, files: Files, share: float) -> Iterator[Flowable]:
     if not pictures:
         yield Paragraph(_inline(token), BODY)
     columns = next(n for n, most in _COLUMNS if len(pictures) <= most)
-    width = (_WIDTH - (columns - 1) * _GAP) / columns
+    width = (WIDTH - (columns - 1) * _GAP) / columns
     high = _PAIR_HIGH if columns > 1 else _MOST_HIGH
     shown = [
         [
@@ -210,7 +164,7 @@ def _paragraph(token: Token, files: Files, share: float) -> Iterator[Flowable]:
     if pictures:
         padded = [*shown, *[""] * (-len(shown) % columns)]
         rows = [padded[i : i + columns] for i in range(0, len(padded), columns)]
-        yield Table(rows, [_WIDTH / columns] * columns, style=BESIDE)
+        yield Table(rows, [WIDTH / columns] * columns, style=BESIDE)
 
 
 def _picture(path: str, files: Files, width: float, high: float, share: float) -> Flowable:
@@ -218,7 +172,7 @@ def _picture(path: str, files: Files, width: float, high: float, share: float) -
     if path.endswith(".svg"):
         data = files.read(path)
         drawing = svg2rlg(io.BytesIO(data))
-        if drawing.width > _WIDE * _WIDTH:
+        if drawing.width > _WIDE * WIDTH:
             high = max(high, _WIDE_HIGH)
         smaller = 1.0 if _TRUE_SIZE.search(data) else share
         scale = smaller * min(1.0, width / drawing.width, high / drawing.height)
@@ -229,7 +183,7 @@ def _picture(path: str, files: Files, width: float, high: float, share: float) -
         _letter(drawing)
         return drawing
     seen = PIL.Image.open(io.BytesIO(files.read(path)))
-    scale = share * min(width / seen.width, high / seen.height)
+    scale = share**2 * min(width / seen.width, high / seen.height)  # it has no words to read
     wide, high = seen.width * scale, seen.height * scale
     # On the white of paper, and hardly finer than it is printed.
     small = seen.convert("RGBA").reduce(max(1, round(inch / scale / _DPI)))
@@ -257,10 +211,10 @@ def _table(rows: list[list[Paragraph]]) -> Flowable:
     columns = [[row[i] for row in rows if i < len(row)] for i in range(max(map(len, rows)))]
     least = [max(cell.minWidth() for cell in column) + _PADDING for column in columns]
     asked = [max(map(_asked, column)) for column in columns]
-    share = min((_WIDTH - sum(least)) / max(sum(asked) - sum(least), 1.0), 1.0)
+    share = min((WIDTH - sum(least)) / max(sum(asked) - sum(least), 1.0), 1.0)
     widths = [low + share * (high - low) for low, high in zip(least, asked, strict=True)]
     if share < 0:
-        widths = [_WIDTH / sum(asked) * high for high in asked]
+        widths = [WIDTH / sum(asked) * high for high in asked]
     split = len(rows) > _WHOLE_ROWS
     table = LongTable(rows, widths, repeatRows=1, splitByRow=split, style=LINES, hAlign="LEFT")
     table.spaceBefore = table.spaceAfter = 6
