@@ -1,4 +1,4 @@
-"""The gallery: the face of every preset, to one scale, and its figures."""
+"""The gallery: the face of the default design and of every preset, to one scale, and figures."""
 
 import json
 import tomllib
@@ -12,12 +12,14 @@ from design_drawings import outline_points, paint_face
 from dimensioned import Drawing
 from markdown_text import code, plain, prose, table
 from preset_figures import FILE, PRESETS
+from repository_pages import ROOT
 
 _INCHES_PER_MM = 0.045
 _INTRO = """# Gallery of presets
 
-Faces of the fingers, seen at the silicone with the tip up, all to one scale. Their figures are in
-the table; each is written by `python docs/site/preset_figures.py`, which builds the presets.
+Faces of the fingers, seen at the silicone with the tip up, all to one scale; the default design,
+`fingertip`, comes first. Their figures are in the table; each is written by
+`python docs/site/preset_figures.py`, which builds them all.
 
 - **Price**: all of `outputs/bom.csv`, one pair with controller, at assumed prices of {stated}.
 - **Prints**: estimated hours and filament of all printed parts.
@@ -42,7 +44,7 @@ def gallery_pages() -> Iterator[tuple[str, str]]:
         name = plain(tomllib.loads(text)["name"])
         shown.append(
             f"## {name}\n\n![Face of the finger: {name}](images/presets/{preset.stem}.svg)\n\n"
-            f"{prose(about(text))}{left_out(preset)}\n\n{code(f'design/presets/{preset.name}')}\n\n"
+            f"{prose(about(text))}{left_out(preset)}\n\n{code(preset.relative_to(ROOT).as_posix())}\n\n"
         )
         yield f"images/presets/{preset.stem}.svg", face(preset).svg()
     stated = plain(figures["published"]["price_stated"].split(", ")[1])

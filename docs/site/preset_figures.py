@@ -1,6 +1,7 @@
-"""Build every preset and write its figures into `preset_figures.json`, which the gallery shows.
+"""Build the default design and every preset, and write their figures into `preset_figures.json`,
+which the gallery shows.
 
-python docs/site/preset_figures.py           # all presets, about half an hour on two cores
+python docs/site/preset_figures.py           # all of them, about half an hour on two cores
 python docs/site/preset_figures.py dense     # this one; the figures of the others stay
 """
 
@@ -15,13 +16,12 @@ import lumitip_fab
 from lumitip_fab.design import Design
 from lumitip_fab.site.folder import Folder
 from lumitip_fab.site.tables import prints, totals
-from lumitip_fab.solve.information import Grasps, expected
+from lumitip_fab.solve.information import USUAL, expected
 from repository_pages import ROOT
 
-PRESETS = sorted((ROOT / "design/presets").glob("*.toml"))
+PRESETS = [ROOT / "design/fingertip.toml", *sorted((ROOT / "design/presets").glob("*.toml"))]
+"""The default design, and the presets."""
 FILE = Path(__file__).with_name("preset_figures.json")
-GRASPS = Grasps(gaps_mm=(2.0, 4.0, 6.0), cables_mm=(2.0, 4.0, 6.0))
-"""Grasps of the expected errors, those of `examples/goals.toml`."""
 
 
 def main(names: list[str]) -> None:
@@ -39,7 +39,7 @@ def main(names: list[str]) -> None:
 
 def measured(name: str) -> dict[str, Any]:
     """Figures of a preset, built in a temporary folder."""
-    file = ROOT / f"design/presets/{name}.toml"
+    (file,) = (preset for preset in PRESETS if preset.stem == name)
     with tempfile.TemporaryDirectory() as out:
         lumitip_fab.build(file, out)
         return {**drawn(lumitip_fab.derived(file)), **built(Path(out))}
@@ -49,7 +49,7 @@ def drawn(design: Design) -> dict[str, Any]:
     """Figures that need no build: cells, pitch and hole (mm), LED current (mA), and the expected
     rms errors of edges and cables (mm and degrees) with optics and gains unknown."""
     layout = design.layout
-    errors = expected(layout, GRASPS).rms()
+    errors = expected(layout, USUAL).rms()
     return {
         "cells": len(layout),
         "pitch_mm": layout.pitch_mm,

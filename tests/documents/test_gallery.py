@@ -30,8 +30,9 @@ def test_it_has_every_preset(doc_site: Path) -> None:
 
 @pytest.mark.slow_cases
 @pytest.mark.parametrize("name", ["published", *(n for n in NAMES if n != "published")])
-def test_the_figures_of_a_design_are_those_of_the_gallery(name: str, design_dir: Path) -> None:
-    found = drawn(lumitip_fab.derived(design_dir / f"presets/{name}.toml"))
+def test_the_figures_of_a_design_are_those_of_the_gallery(name: str) -> None:
+    (file,) = (preset for preset in PRESETS if preset.stem == name)
+    found = drawn(lumitip_fab.derived(file))
     assert near(found, name), REMEDY
 
 

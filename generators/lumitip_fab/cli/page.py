@@ -1,8 +1,10 @@
 """`lumitip-fab page`: one page about an output folder."""
 
 import argparse
+from functools import cache
 from pathlib import Path
 
+from lumitip.layout import Layout
 from lumitip_fab.cli.screen import OUT
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline.manifest import PAGE, STAMP, content_hash, write_file
@@ -33,8 +35,9 @@ def write_page(out: Path, watched: bool = False) -> Path:
 
     folder = Folder.of(out)
     rows = (*spec.rows(folder.design), *built_rows(out, folder.design))
+    figures = [(r.quantity, r.published, r.computed, r.reason) for r in rows]
     stamp = content_hash(out) if watched else ""
-    text = page(folder, [(r.quantity, r.published, r.computed, r.reason) for r in rows], stamp)
+    text = page(folder, figures, _errors(folder.design.layout.to_json()), stamp)
     path = out / PAGE
     try:
         write_file(path, text.encode())
@@ -48,3 +51,11 @@ def write_page(out: Path, watched: bool = False) -> Path:
             "can be written is needed. Choose another folder."
         ) from error
     return path
+
+
+@cache
+def _errors(layout: str) -> dict[str, float]:
+    """Rms errors that the twin lets expect, by figure; a page that is written anew asks again."""
+    from lumitip_fab.solve.information import USUAL, expected
+
+    return expected(Layout.from_json(layout), USUAL).rms()

@@ -112,12 +112,7 @@ def _force(out: Path) -> Iterator[str]:
         limit = read_design(out / "design.json").strength
     except OutputError:
         return
-    rated = f"rated force: {limit.rated_force_n:g} N at each tip, an estimate"
-    if not limit.gripper_n:
-        rated += "; the gripper's force is not known: limit it"
-    elif limit.gripper_n > limit.rated_force_n:
-        rated += f"; the gripper closes with up to {limit.gripper_n:g} N: limit it"
-    yield rated
+    yield f"rated force: {limit.rating}"
 
 
 def _price(out: Path) -> str:

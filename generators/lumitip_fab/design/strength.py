@@ -47,6 +47,16 @@ class Strength:
         """Greatest force of the gripper; that of a finger, where the gripper's is not known."""
         return self.gripper_n or self.rated_force_n
 
+    @property
+    def rating(self) -> str:
+        """The rated force in words, with what the gripper does to it."""
+        rated = f"{self.rated_force_n:g} N at each tip, an estimate"
+        if not self.gripper_n:
+            return f"{rated}; the gripper's force is not known: limit it"
+        if self.gripper_n > self.rated_force_n:
+            return f"{rated}; the gripper closes with up to {self.gripper_n:g} N: limit it"
+        return rated
+
 
 @dataclass(frozen=True)
 class Loads:

@@ -20,13 +20,15 @@ _KINDS = {
     "F": "fuse",
     "J": "connector",
     "L": "inductor",
+    "LED": "LED",
     "Q": "transistor",
     "R": "resistor",
+    "RN": "resistor array",
     "U": "circuit",
     "Y": "crystal",
     "Z": "ESD diode",
 }
-"""Kind of a part by the first letter of its references."""
+"""Kind of a part by the letters of its references."""
 _ON_BOARD = {
     "receiver": {"Q": "photodetector"},
     "emitter": {"U": "current source"},
@@ -44,9 +46,9 @@ def electronics(design: Design, files: Files) -> Iterator[Bought]:
         if "parts" not in files.facts(path):
             continue  # a panel, whose parts are those of its board
         for row in files.facts(path)["parts"]:
-            ref, letter = row["refs"].split(",")[0], row["refs"][0]
-            own = _ON_BOARD.get(board, {})
-            kind = own.get(ref) or own.get(letter) or _KINDS[letter]
+            ref = row["refs"].split(",")[0]
+            letters, own = ref.rstrip("0123456789"), _ON_BOARD.get(board, {})
+            kind = own.get(ref) or own.get(letters) or _KINDS[letters]
             key = f"{kind} {row['value']}", row["manufacturer"], row["part"]
             found.setdefault(key, {})[board] = int(row["quantity"])
     for (item, maker, part), where in sorted(found.items()):

@@ -20,7 +20,9 @@ from rich.console import Console
 from rich.table import Table
 from scipy.spatial import cKDTree
 
+from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import read_design
+from lumitip_fab.design.mould import printed_times
 from lumitip_fab.errors import BuildError, OutputError
 
 PROGRAMS = ("prusa-slicer", "PrusaSlicer", "prusa-slicer-console")
@@ -38,9 +40,12 @@ class Sliced:
 
     part: str
     """Path of its 3MF below the output folder."""
+    number: int
+    """How often it is printed for a pair of fingers: 0 for a sheet of a mask of film."""
     settings: str
     filament: str
     seconds: int
+    """Of one, as the figures below."""
     grams: float
     """Filament with the brim."""
     solid_g: float
@@ -88,7 +93,7 @@ def slice_parts(
                     part,
                     code.read_text(encoding="utf-8"),
                     said,
-                    (filament.file, filament.name),
+                    (_number(design, part), filament.file, filament.name),
                     filament.density_g_ml,
                     design.printing.line_mm,
                 )
@@ -102,6 +107,13 @@ def _parts(out: Path) -> Iterator[str]:
     except (OSError, ValueError, KeyError) as problem:
         raise OutputError(f"{out}: was not built ({problem}): run lumitip-fab build") from None
     return (path for path in listed if path.endswith(".3mf"))
+
+
+def _number(design: Design, part: str) -> int:
+    """How often a 3MF is printed for a pair of fingers."""
+    if part.startswith("mask/") and design.mask.route != "tpu":
+        return 0
+    return printed_times(design.mould_accessories, part.removesuffix("3mf") + "stl")
 
 
 def _program() -> str:
@@ -132,7 +144,7 @@ def _read(
     part: str,
     text: str,
     warnings: tuple[str, ...],
-    printed_from: tuple[str, str],
+    printed_from: tuple[int, str, str],
     density_g_ml: float,
     line_mm: float,
 ) -> Sliced:
@@ -157,26 +169,28 @@ def _read(
 
 
 def as_json(parts: tuple[Sliced, ...]) -> str:
-    """Every figure of every part, and the sums."""
+    """Every figure of every part, and the sums for a pair of fingers."""
     record: dict[str, Any] = {
         "parts": [dataclasses.asdict(part) for part in parts],
-        "seconds": sum(part.seconds for part in parts),
-        "grams": round(sum(part.grams for part in parts), 2),
+        "seconds": sum(part.number * part.seconds for part in parts),
+        "grams": round(sum(part.number * part.grams for part in parts), 2),
     }
     return json.dumps(record, indent=1)
 
 
 def print_table(parts: tuple[Sliced, ...], console: Console) -> None:
-    """Time, mass and what hangs over nothing; warnings of the slicer below."""
+    """Number, time and mass of each, and what hangs over nothing; sums for a pair of fingers, and
+    warnings of the slicer below."""
     table = Table(box=None, pad_edge=False, header_style="bold")
     table.add_column("part", no_wrap=True)
     table.add_column("filament", no_wrap=True)
-    for heading in ("time", "filament", "of it solid", "layers", "hangs out", "at"):
+    for heading in ("times", "time", "filament", "of it solid", "layers", "hangs out", "at"):
         table.add_column(heading, justify="right", no_wrap=True)
     for p in parts:
         table.add_row(
             p.part,
             p.filament,
+            str(p.number) if p.number else "not needed",
             _time(p.seconds),
             f"{p.grams:.1f} g",
             f"{p.solid_g:.1f} g",
@@ -184,8 +198,9 @@ def print_table(parts: tuple[Sliced, ...], console: Console) -> None:
             f"{p.reach_mm:.1f} mm",
             f"{p.reach_at_mm:.1f} mm",
         )
-    total_g = sum(p.grams for p in parts)
-    table.add_row("all", "", _time(sum(p.seconds for p in parts)), f"{total_g:.1f} g")
+    total_g = sum(p.number * p.grams for p in parts)
+    whole_s = sum(p.number * p.seconds for p in parts)
+    table.add_row("one pair of fingers", "", "", _time(whole_s), f"{total_g:.1f} g")
     console.print(table)
     for part in parts:
         for line in part.warnings:

@@ -4,12 +4,11 @@ import base64
 import json
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from html import escape
 from string import Template
 from typing import Any
-from urllib.parse import quote
 from xml.etree import ElementTree
 
 import numpy as np
@@ -17,18 +16,17 @@ from numpy.typing import NDArray
 
 from lumitip.layout import Layout
 from lumitip.twin import Model
+from lumitip_fab.site.answers import answers, lead
 from lumitip_fab.site.beds import bed_mesh
 from lumitip_fab.site.boards import Followed, board_svg
 from lumitip_fab.site.cells import CellRecord, cell_records
-from lumitip_fab.site.checks import check_rows, figure
+from lumitip_fab.site.checks import check_rows
 from lumitip_fab.site.folder import WIRING, Folder, board_path
 from lumitip_fab.site.library import colour_ramp, three_js
 from lumitip_fab.site.masks import grid_svg, mask_svg
 from lumitip_fab.site.tables import (
     Figure,
-    Print,
     bill_table,
-    duration,
     figure_table,
     file_lists,
     order_table,
@@ -55,12 +53,15 @@ SCRIPTS = (
 _SVG = re.compile(r'<svg\b[^>]*\bviewBox="([^"]+)"[^>]*>(.*)', re.DOTALL)
 
 
-def page(folder: Folder, figures: Sequence[Figure], stamp: str = "") -> str:
+def page(
+    folder: Folder, figures: Sequence[Figure], errors: Mapping[str, float], stamp: str = ""
+) -> str:
     """The whole page; the same files give the same bytes.
 
     Args:
         folder: the output folder.
         figures: of the design, beside the published ones.
+        errors: expected ones in mm and degrees: `edge_mm`, `edge_deg`, `cable_mm`, `cable_deg`.
         stamp: of a folder that is watched: the open page is loaded again when another is written.
 
     Raises:
@@ -88,8 +89,8 @@ def page(folder: Folder, figures: Sequence[Figure], stamp: str = "") -> str:
     values = {
         "title": f"{escape(design.title.name)} {escape(design.title.revision)}",
         "hash": layout.design_hash[:12],
-        "lead": escape(_lead(folder)),
-        "answers": "".join(_answers(folder, checks, parts)),
+        "lead": escape(lead(folder)),
+        "answers": "".join(answers(folder, checks, parts, errors)),
         "cells": len(layout),
         "last": len(layout) - 1,
         "grid": grid_svg(layout.x_mm.tolist(), layout.y_mm.tolist(), layout.pitch_mm),
@@ -147,74 +148,6 @@ def _json(data: Any) -> str:
     """JSON that may stand in a script element."""
     text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
     return text.replace("</", "<\\/").replace("<!--", "<\\u0021--")
-
-
-def _lead(folder: Folder) -> str:
-    design = folder.design
-    return (
-        f"Two gripper fingers that see by infrared light: {len(design.layout)} LEDs in one face, "
-        f"as many photodetectors in the other, {design.layout.pitch_mm:g} mm apart. "
-        f"For {design.mount.title}, read by {design.controller.title}."
-    )
-
-
-def _answers(folder: Folder, checks: Sequence[dict[str, Any]], parts: Sequence[Print]) -> list[str]:
-    """Answers to the first questions of a maker."""
-    design, (used, packs, stated) = folder.design, totals(folder)
-    currency = stated.partition(",")[0]
-    minutes = sum(part.minutes * part.number for part in parts)
-    glue_h, cure_h = design.mould.glue_hard_h, design.mould.cure_h
-    glue = f"glue {glue_h:g} h, " if glue_h else ""
-    return [
-        _answer(
-            "What does it cost?",
-            f"{used:.0f} {currency}",
-            f'{packs:.0f} {escape(currency)} if whole packs are bought. <a href="#bill">Bill</a>',
-        ),
-        _answer(
-            "How long does it take?",
-            f"{duration(minutes)} of printing",
-            f"then {glue_h + 2 * cure_h:g} h of waiting: {glue}silicone {cure_h:g} h for a trial "
-            f"and {cure_h:g} h for the skin. "
-            '<a href="#prints">Parts</a>',
-        ),
-        _quality(folder, checks),
-        _answer(
-            "What is first?",
-            "Order the boards",
-            '<a href="#boards">Order files</a>. Meanwhile print '
-            f"{_first(folder)}, then follow the "
-            '<a href="manual/manual.html">build manual</a>.',
-        ),
-    ]
-
-
-def _first(folder: Folder) -> str:
-    file = "fit/fit_plate.stl"
-    if file in folder.manifest.files:
-        return f'the <a href="{quote(file)}">fit test plate</a>'
-    return '<a href="#prints">the parts</a>'
-
-
-def _quality(folder: Folder, checks: Sequence[dict[str, Any]]) -> str:
-    names = {entry["check"] for entry in checks}
-    failed = {entry["check"] for entry in checks if not entry["passed"]}
-    rated_n = folder.design.strength.rated_force_n
-    more = f'Rated for {figure(rated_n)} N at each tip. <a href="#checks">Checks</a>'
-    if not checks:
-        since = "" if folder.checked is None else " since the files changed"
-        return _answer("How good is it?", f"Not checked{since}", f"Run make outputs. {more}")
-    if failed:
-        return _answer("How good is it?", f"{len(failed)} of {len(names)} checks fail", more, "bad")
-    measured = f"{len(checks)} measurements of the files are within their limits. {more}"
-    return _answer("How good is it?", f"{len(names)} checks pass", measured, "good")
-
-
-def _answer(question: str, answer: str, more: str, kind: str = "") -> str:
-    return (
-        f'<div class="answer {kind}"><h2>{escape(question)}</h2>'
-        f'<p class="big">{escape(answer)}</p><p>{more}</p></div>'
-    )
 
 
 def _finger(folder: Folder, name: str, records: Sequence[CellRecord]) -> str:

@@ -121,13 +121,15 @@ def bill_table(folder: Folder, targets: Targets) -> str:
 
 
 def totals(folder: Folder) -> tuple[float, float, str]:
-    """Price of one pair, price of whole packs, and the currency with its level of trust.
+    """Price of one pair, price of whole packs, and the currency with date and level of trust of
+    the prices, and how many lines have none.
 
     Raises:
         OutputError: if a table has no sum.
     """
-    stated, _, _ = folder.rows(BILL)[-1]["for"].partition(":")
-    return _sum(folder, BILL), _sum(folder, ORDER), stated
+    stated, _, notes = folder.rows(BILL)[-1]["for"].partition(":")
+    unpriced = [note for note in notes.split(";") if note.endswith(" without a price")]
+    return _sum(folder, BILL), _sum(folder, ORDER), ",".join([stated, *unpriced])
 
 
 def _sum(folder: Folder, path: str) -> float:

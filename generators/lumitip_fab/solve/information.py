@@ -46,6 +46,10 @@ class Grasps:
     """Of edges, and of each cable, at each gap."""
 
 
+USUAL = Grasps(gaps_mm=(2.0, 4.0, 6.0), cables_mm=(2.0, 4.0, 6.0))
+"""Grasps of the errors that page and gallery show, those of `examples/goals.toml`."""
+
+
 @dataclass(frozen=True, eq=False)
 class Expected:
     """Standard deviations of offset (mm) and angle (degrees), shape `(n, 2)`."""
