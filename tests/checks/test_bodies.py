@@ -35,9 +35,11 @@ def in_model(path: Path, change: Callable[[str], str]) -> None:
             package.writestr(name, data)
 
 
-def model(old: str, new: str) -> Damage:
+def model(old: str, new: str, count: int = 0) -> Damage:
     """Replace a pattern in the model of the clamp's 3MF."""
-    return lambda folder: in_model(folder / THREE_MF, lambda text: re.sub(old, new, text))
+    return lambda folder: in_model(
+        folder / THREE_MF, lambda text: re.sub(old, new, text, count=count)
+    )
 
 
 def a_vertex_moved(folder: Path) -> None:
@@ -150,6 +152,11 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
         model(r'v1="(\d+)" v2="(\d+)"', r'v1="\2" v2="\1"'),
         {"volume"},
     ),
+    "3MF with a triangle turned over": (
+        model(r'triangle v1="(\d+)" v2="(\d+)"', r'triangle v1="\2" v2="\1"', 1),
+        {"surface"},
+    ),
+    "3MF with a triangle lost": (model("<triangle [^>]*>", "", 1), {"surface"}),
     "3MF not a number": (model(r'x="[-\d.]+"', 'x="nan"'), {"surface"}),
     "3MF support only": (model('type="model"', 'type="support"'), {"surface"}),
     "a vertex moved": (a_vertex_moved, {"surface"}),

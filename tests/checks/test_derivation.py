@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from damages import edit, excerpt
+from damages import cut_short, edit, excerpt
 from lumitip_fab.checks import derivation
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.cli.build import build
@@ -51,6 +51,11 @@ DAMAGES: dict[str, tuple[Callable[[Path], None], str]] = {
         lambda folder: edit(folder / "resolved.toml", f'led = "{LED}"', 'led = "VSMY1850"'),
         "design",
     ),
+    "part in a comment": (
+        lambda folder: edit(folder / "resolved.toml", '# manufacturer = "Yageo"', "#"),
+        "values",
+    ),
+    "end lost": (lambda folder: cut_short(folder / "resolved.toml", 9000), "values"),
     "text": (lambda folder: edit(folder / "resolved.toml", "[grid]", "[grid"), "design"),
     "gone": (lambda folder: (folder / "resolved.toml").unlink(), "design"),
     "switch": (in_design(lambda d: d["wiring"].update(apart=not d["wiring"]["apart"])), "design"),

@@ -33,6 +33,8 @@ TEXT = f"""\
 |---|---|---:|---|
 {ROWS}
 
+Wash your hands.
+
 - one **bold** `code/file_name.stl`
   1. inner
   2. inner two
@@ -49,6 +51,8 @@ TEXT = f"""\
 After. http://example.com/long_url-with-{"hyphens-" * 30}end {"y" * 200}
 """
 NOTED = """# Casting
+
+Wash your hands.
 
 3. three at 2.5 °C, for 24 h, as the note says
 4. Another one of 7 mm
@@ -102,6 +106,16 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
     "number of a note changed": (
         lambda folder: edit(folder / NOTE, "24 h", "12 h"),
         {"notes"},
+    ),
+    "line of a note twice": (
+        lambda folder: edit(folder / NOTE, "Wash your hands.", "Wash your hands.\n\n" * 2),
+        {"lines"},
+    ),
+    "line of a note moved": (
+        lambda folder: (folder / NOTE).write_text(
+            NOTED.replace("Wash your hands.\n\n", "") + "\nWash your hands.\n", encoding="utf-8"
+        ),
+        {"lines"},
     ),
     "note unreadable": (lambda folder: (folder / NOTE).write_bytes(b"\xff"), {"notes"}),
     "sign changed": (html("≥ ½", "≤ ½"), {"words"}),

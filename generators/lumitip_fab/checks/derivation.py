@@ -4,12 +4,14 @@ The derivation is run again, by the same code: a fault of it is not seen here.""
 
 import json
 import tomllib
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from lumitip_fab.checks.result import Measurement, Subject, unreadable
 from lumitip_fab.config.load import load
+from lumitip_fab.config.resolved import resolved_text
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Choice, Design
 from lumitip_fab.design.encoding import encoded
@@ -26,8 +28,10 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     What was chosen automatically is a plain value in `resolved.toml`, and is compared with that.
     """
     try:
-        again = encoded(derive(load(outputs / _PARAMETERS, outputs)))
-        values = tomllib.loads((outputs / _PARAMETERS).read_text(encoding="utf-8"))
+        config = load(outputs / _PARAMETERS, outputs)
+        again = encoded(derive(config))
+        text = (outputs / _PARAMETERS).read_text(encoding="utf-8")
+        values = tomllib.loads(text)
         written = json.loads((outputs / _DESIGN).read_text(encoding="utf-8"))
     except (FabError, OSError, ValueError) as error:
         yield unreadable("derivation.design", _PARAMETERS, f"cannot be derived: {error!s:.300}")
@@ -37,6 +41,9 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield of.count("design", wrong, "figures do not follow from resolved.toml: build again")
     odd = [c.field for c in design.choices if not _has(values, c)]
     yield of.count("choices", odd, "automatic values are not in resolved.toml")
+    lines, wanted = Counter(text.splitlines()), Counter(resolved_text(config).splitlines())
+    changed = sorted(((lines - wanted) + (wanted - lines)).elements())
+    yield Subject("derivation", _PARAMETERS).count("values", changed, "lines are not of its design")
 
 
 def _differing(one: Any, other: Any, place: str) -> Iterator[str]:

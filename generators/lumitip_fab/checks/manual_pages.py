@@ -8,6 +8,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
+from lumitip_fab.checks.notes import lines_misplaced
 from lumitip_fab.checks.readers.manual import (
     Html,
     Passage,
@@ -47,6 +48,7 @@ def measure(outputs: Path, _design: Design) -> Iterator[Measurement]:
     lost = [to for to in page.links if not _leads(outputs, page, to)]
     yield html.count("links", lost, "that lead nowhere")
     yield html.count("notes", list(_at_odds(outputs, page)), "passages at odds with a note")
+    yield html.count("lines", list(lines_misplaced(outputs, page)), "lines of a note misplaced")
     pdf = Subject("manual_pages", _PDF)
     try:
         sheets = read_sheets(outputs / _PDF)

@@ -5,6 +5,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lumitip_fab.checks.readers import MALFORMED
 from lumitip_fab.checks.readers.solids import Vectors
@@ -50,11 +51,20 @@ def _item(shape: ElementTree.Element, item: dict[str, str]) -> Vectors:
     corners = _table(shape, "triangle", _CORNERS, int)
     if corners.size == 0 or corners.min() < 0:
         raise ValueError("no triangles, or corners below zero")
+    if not _is_closed(corners):
+        raise ValueError("a mesh that is open, or has triangles that are turned over")
     matrix = np.array((item.get("transform") or "1 0 0 0 1 0 0 0 1 0 0 0").split(), dtype=float)
     turn, shift = matrix[:9].reshape(3, 3), matrix[9:]
     if not math.isclose(float(np.linalg.det(turn)), 1.0, abs_tol=1e-6):
         raise ValueError("an item that is scaled or mirrored")
     return np.asarray((points @ turn + shift)[corners], dtype=np.float64)
+
+
+def _is_closed(corners: NDArray[np.generic]) -> bool:
+    """Whether each edge of a triangle is there once, and once the other way, as the format asks."""
+    begin, end = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+    there, back = (np.unique(a * (corners.max() + 1) + b) for a, b in ((begin, end), (end, begin)))
+    return len(there) == len(begin) and bool(np.array_equal(there, back))
 
 
 def _table(
