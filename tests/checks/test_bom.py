@@ -37,6 +37,7 @@ EDITS = [
     ("bom.csv", "32,piece,0.3,9.60", "32,piece,0.2,6.40", {"prices", "total"}),
     ("bom.csv", "32,piece,0.3,9.60", "32,piece,0.3,6.90", {"prices", "total"}),
     ("bom.csv", "Elektronik,15406085BA300,", "Elektronik,15406085BA200,", {"parts", "prices"}),
+    ("bom.csv", "photodetector SML-H10TBT86,ROHM", "photodetector SML-H10TBT86,Rohm", {"parts"}),
     ("bom.csv", "emitter board", "emitting board", {"boards"}),
     ("bom.csv", "backing/emitter_backing.stl", "backing/emitter_back.stl", {"prints"}),
     (
@@ -57,8 +58,13 @@ EDITS = [
         ',"74HC4067PW,118"',
         {"parts"},
     ),
-    ("boards/receiver/order/generic_receiver_bom.csv", ",Nexperia,", ",,", {"numbered"}),
-    ("boards/receiver/order/generic_receiver_bom.csv", ",Nexperia,", ",any,", {"numbered"}),
+    ("boards/receiver/order/generic_receiver_bom.csv", ",Nexperia,", ",,", {"numbered", "parts"}),
+    (
+        "boards/receiver/order/generic_receiver_bom.csv",
+        ",Nexperia,",
+        ",any,",
+        {"numbered", "parts"},
+    ),
     ("mould/emitter_casting.md", "part A | **", "part A | **1", {"silicone"}),
     ("wiring/cables.csv", "BK,0.08,250", "BK,0.08,950", {"wire"}),
 ]

@@ -31,6 +31,8 @@ EDITS = [
     ('5 m each",assumed,1,15,15.00', '5 m each",assumed,2,15,30.00', {"enough", "total"}),
     ("spool of 1 kg,assumed,1,25,25.00", "spool of 1 kg,assumed,1,25,20.00", {"enough", "total"}),
     ("5 boards,inferred,1,12.1,12.10", "4 boards,inferred,1,12.1,12.10", {"enough"}),
+    ("wooden stick,,", "resistor 1K1,,", {"lines"}),
+    ("DOWSIL PR-1200,Dow,", "DOWSIL PR-1200,Dow Inc,", {"lines"}),
     ("pack_price,price", "price", {"readable"}),
 ]
 

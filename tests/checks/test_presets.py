@@ -37,9 +37,6 @@ def test_a_measurement_that_could_not_be_taken_fails() -> None:
 
 UNREAD = (
     ".built",  # spares a build
-    "boards/*/*.cir",  # run by ngspice in the tests
-    "boards/*/*_front.svg",  # pictures, which the manual shows as PNG
-    "boards/*/*_back.svg",
 )
 
 

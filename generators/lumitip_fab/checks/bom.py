@@ -48,6 +48,7 @@ class Row:
 
     group: str
     item: str
+    maker: str
     part: str
     quantity: float
     each: float | None
@@ -141,6 +142,7 @@ def _read(path: Path) -> tuple[tuple[Row, ...], float, str]:
             Row(
                 r["group"],
                 r["item"],
+                r["manufacturer"],
                 r["part"],
                 _figure(r["quantity"]),
                 _price(r["unit_price"]),
@@ -169,18 +171,22 @@ def _boards(design: Design) -> tuple[str, ...]:
     return (*(f.name for f in design.fingers), *(c.name for c in design.auxiliary_boards))
 
 
-def _parts(outputs: Path, design: Design) -> Counter[str]:
-    """Quantity of each order number, from the list for a PCB fab that includes both."""
-    fab = next(
-        fab for fab in design.fabs if {"part", "quantity"} <= {field for _, field in fab.bom}
-    )
+Part = tuple[str, str]
+"""Manufacturer, and order number."""
+
+
+def _parts(outputs: Path, design: Design) -> Counter[Part]:
+    """Quantity of each part, from the list for a PCB fab that includes all three."""
+    needed = {"manufacturer", "part", "quantity"}
+    fab = next(fab for fab in design.fabs if needed <= {field for _, field in fab.bom})
     heading = {field: head for head, field in fab.bom}
-    found: Counter[str] = Counter()
+    found: Counter[Part] = Counter()
     for name in _boards(design):
         path = outputs / f"boards/{name}/order/{fab.name}_{name}_bom.csv"
         try:
             for row in table(path.read_text(encoding="utf-8")):
-                found[row[heading["part"]]] += int(row[heading["quantity"]])
+                part = row[heading["manufacturer"]], row[heading["part"]]
+                found[part] += int(row[heading["quantity"]])
         except (OSError, ValueError, KeyError) as error:
             raise OutputError(f"{path}: cannot be read: {error!r:.120}") from error
     return found
@@ -210,15 +216,15 @@ def _casting(outputs: Path, design: Design) -> Iterator[str]:
             raise OutputError(f"{path}: {error}") from error
 
 
-def _wrong_parts(rows: tuple[Row, ...], parts: Counter[str], design: Design) -> list[str]:
-    counts: Counter[str] = Counter()
+def _wrong_parts(rows: tuple[Row, ...], parts: Counter[Part], design: Design) -> list[str]:
+    counts: Counter[Part] = Counter()
     for row in rows:
         if row.group == "electronics":
-            counts[row.part] += round(row.quantity)
+            counts[row.maker, row.part] += round(row.quantity)
     soldered = any(d.kind == "module" for c in design.auxiliary_boards for d in c.components)
-    wanted = parts + Counter({} if soldered else {design.controller.title: 1})
+    wanted = parts + Counter({} if soldered else {("", design.controller.title): 1})
     return [
-        f"{part}: {counts[part]}, not {wanted[part]}"
+        f"{' '.join(part)}: {counts[part]}, not {wanted[part]}"
         for part in sorted({*counts, *wanted})
         if counts[part] != wanted[part]
     ]

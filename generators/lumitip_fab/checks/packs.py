@@ -19,6 +19,8 @@ class Row:
     """A line of the list to order."""
 
     item: str
+    product: str
+    """Its manufacturer and order number."""
     needed: float
     pack: str
     packs: int
@@ -39,6 +41,9 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         return
     note = "of all quantities of the bill"
     yield Measurement("packs.needed", _FILE, needed, used - 0.1, used + 0.1, "units", note)
+    yield count(
+        "packs.lines", _FILE, list(_strange(orders, bill, design.purchase)), "not as the bill"
+    )
     wrong = [order.item for order in orders if not _enough(order, design.purchase)]
     yield count("packs.enough", _FILE, wrong, "wrong numbers or prices of packs")
     prices = sum(order.price or 0.0 for order in orders)
@@ -47,9 +52,25 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield Measurement("packs.total", _FILE, off, 0, _CENT, currency, f"of {prices:.2f}")
 
 
+def _strange(orders: list[Row], bill: list[dict[str, str]], purchase: Purchase) -> Iterator[str]:
+    """Lines whose item or product is none of the bill's or of its packs, and lines of the bill of
+    which neither is listed."""
+    items = {row["item"] for row in bill} | {pack.title for pack in purchase.packs}
+    products = {f"{row['manufacturer']} {row['part']}" for row in bill}
+    products |= {f"{pack.manufacturer} {pack.product}" for pack in purchase.packs}
+    yield from (o.item for o in orders if o.item not in items or o.product not in products)
+    names = {name for order in orders for name in (order.item, order.product)}
+    shared = {pack.name: f"{pack.manufacturer} {pack.product}" for pack in purchase.packs}
+    for row in bill:
+        product = f"{row['manufacturer']} {row['part']}"
+        if names.isdisjoint({row["item"], product, shared.get(row["part"], "")} - {" "}):
+            yield row["item"]
+
+
 def _row(row: dict[str, str]) -> Row:
     return Row(
         row["item"],
+        f"{row['manufacturer']} {row['part']}",
         float(row["needed"]),
         row["pack"],
         int(row["packs"]),

@@ -49,6 +49,8 @@ MODULES = (
     "models",
     "schematic",
     "libraries",
+    "netlists",
+    "pictures",
     "orders",
     "panels",
     "printing",
