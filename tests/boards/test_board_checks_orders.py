@@ -11,6 +11,7 @@ from board_damages import rezip
 from damages import failing
 from lumitip_fab.checks import orders
 from lumitip_fab.design.encoding import read_design
+from order_copper_damages import COPPER_DAMAGES
 from order_damages import BOM, FIRST, FOLDER_DAMAGES, SECOND
 
 pytestmark = pytest.mark.slow
@@ -163,13 +164,13 @@ def stop_line_names_others_below(files: Files) -> None:
 
 
 FIRST_DAMAGES: dict[Damage, set[str]] = {
-    pour_missing: {"copper", "same"},
+    pour_missing: {"copper", "open", "same"},
     tracks_thin: {"copper", "same"},
     opening_missing: {"mask", "same"},
     mask_open_on_copper: {"exposed", "same"},
     paste_missing: {"paste", "same"},
     paste_on_bare_copper: {"paste", "same"},
-    edge_farther: {"outline", "same"},
+    edge_farther: {"outline", "routed", "same"},
     drill_missing: {"drills", "same"},
     drill_larger: {"drills", "same"},
     silk_on_a_pad: {"silk", "silk_clear", "same"},
@@ -204,6 +205,23 @@ def test_a_damage_of_the_layers(damage: Damage, damaged_boards: Path) -> None:
     assert failing(damaged_boards, "orders", "receiver") == FIRST_DAMAGES[damage]
 
 
+@pytest.mark.parametrize("name", COPPER_DAMAGES)
+def test_a_damage_of_copper_edge_or_attributes(name: str, damaged_boards: Path) -> None:
+    ending, change, expected = COPPER_DAMAGES[name]
+    board = damaged_boards / "boards/receiver/receiver.kicad_pcb"
+
+    def damage(files: Files) -> None:
+        (file,) = (n for n in files if n.endswith(ending))
+        text = files[file].decode()
+        files[file] = change(text, board).encode()
+        assert files[file] != text.encode()
+
+    rezip(folder_of(damaged_boards) / f"{FIRST}_receiver.zip", damage)
+    # Only the first zip has it, and so the others differ from it.
+    same = set() if expected == {"readable"} else {"same"}
+    assert failing(damaged_boards, "orders", "receiver") == expected | same
+
+
 def test_another_layer_in_another_zip(damaged_boards: Path) -> None:
     rezip(folder_of(damaged_boards) / f"{SECOND}_receiver.zip", another_layer)
     assert failing(damaged_boards, "orders", "receiver") == {"silk", "same"}
@@ -230,6 +248,8 @@ TABLES = {
     "another number at LCSC": (BOM, rb"C5645,", b"C5646,", {"bom"}),
     "number at LCSC lost": (BOM, rb"C114636,", b",", {"bom"}),
     "another resistor": (BOM, rb"RC0603FR-0775KL", b"RC0603FR-077K5L", {"bom"}),
+    "another value": (BOM, rb"75K,", b"76K,", {"bom"}),
+    "another footprint": (BOM, rb"RESC1608", b"RESC2012", {"bom"}),
     "row lost": (PLACES, rb"Q5,[^\n]*\n", b"", {"placed"}),
     "row twice": (PLACES, rb"(Q5,[^\n]*\n)", rb"\g<1>\g<1>", {"placed"}),
     "row cut short": (PLACES, rb"(Q5,[-\d.]+),[^\n]*\n", rb"\g<1>\r\n", {"readable"}),
@@ -262,5 +282,11 @@ def test_every_check_fails_for_some_damage(boards: Callable[[str], Path]) -> Non
     found = list(orders.measure(folder, read_design(folder / "design.json")))
     assert [m for m in found if not m.passed] == []
     names = {m.check.removeprefix("orders.") for m in found}
-    tables = [*FIRST_DAMAGES.values(), *FOLDER_DAMAGES.values(), *(t[3] for t in TABLES.values())]
+    copper = [expected for _, _, expected in COPPER_DAMAGES.values()]
+    tables = [
+        *copper,
+        *FIRST_DAMAGES.values(),
+        *FOLDER_DAMAGES.values(),
+        *(t[3] for t in TABLES.values()),
+    ]
     assert names <= set().union(*tables)

@@ -21,7 +21,7 @@ def _failed(out: Path) -> dict[str, str]:
 def test_schematics_and_boards_agree(boards: Callable[[str], Path], preset: str) -> None:
     out = boards(preset)
     told = list(schematic.measure(out, read_design(out / "design.json")))
-    assert [m.check for m in told] == ["schematic.parts", "schematic.nets"] * 4
+    assert [m.check for m in told] == ["schematic.parts", "schematic.fields", "schematic.nets"] * 4
     assert all(m.passed for m in told), [m.note for m in told]
 
 
@@ -32,6 +32,15 @@ def test_schematics_and_boards_agree(boards: Callable[[str], Path], preset: str)
         ("emitter", '(property "Reference" "D2"', '(property "Reference" "D3"', "nets"),
         ("receiver", '(property "Value" "75K"', '(property "Value" "7K5"', "parts"),
         ("receiver", '"lumitip:RESC1608X50N" (id', '"lumitip:RESC2012X50N" (id', "parts"),
+        ("receiver", '(property "MPN" "SML-', '(property "MPN" "SMM-', "fields"),
+        (
+            "receiver",
+            '(property "Manufacturer" "Nexperia"',
+            '(property "Maker" "Nexperia"',
+            "fields",
+        ),
+        ("receiver", '(property "LCSC" "C', '(property "LCSC" "C9', "fields"),
+        ("emitter", '(lib_id "lumitip:R")', '(lib_id "lumitip:R") (dnp yes)', "fields"),
         ("receiver", "(kicad_sch", "(kicad_pcb", "readable"),
     ],
 )

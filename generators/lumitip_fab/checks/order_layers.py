@@ -9,15 +9,17 @@ from shapely import affinity, box
 from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks.board_read import ReadBoard, lands
+from lumitip_fab.checks.order_nets import measure_nets
+from lumitip_fab.checks.order_roles import measure_roles
 from lumitip_fab.checks.readers.gerber import drilled, gerber_area
 from lumitip_fab.checks.readers.kicad_silk import Word
 from lumitip_fab.checks.result import Measurement, Subject
 from lumitip_fab.design import Box
 
-AREA_SHARE = 0.001  # of the copper
 PLACE_MM = 0.001
 MASK_GAP_MM = 0.1  # an opening round a pad, each side, at most
 INK_SHARE = 0.03  # of the room of a word, at least
+_CHORD_MM = 0.01  # of arcs, off their chords
 _ROUND_MM2 = 0.01  # what chords of round pens leave of all lines of a side
 _SIDES = ("front", "back")
 Holes = list[tuple[float, float, float]]
@@ -38,6 +40,9 @@ def measure_layers(
         return painted[data]
 
     outline = _in_sensor(read, read.outline)
+    yield measure_roles(path, layers)
+    copper = [area(f"{side} copper") for side in _SIDES]
+    yield from measure_nets(path, read, copper, drilled(layers["plated"].decode()))
     for side, layer in zip(_SIDES, (read.board.layers[0], read.board.layers[-1]), strict=True):
         of = Subject("orders", f"{path}: {side}")
         yield from _copper(of, read, layer, area(f"{side} copper"))
@@ -47,7 +52,7 @@ def measure_layers(
         yield of.figure("paste", off, 0, PLACE_MM, "mm²", "differs from the pads of mounted parts")
         bare = shapely.union(area(f"{side} mask"), shapely.difference(_all(outline), outline))
         yield from _silk(of, read, side == "front", area(f"{side} silk"), bare)
-    yield _edge(path, read, area("outline"))
+    yield from _edge(path, outline, area("outline"))
     yield from _drills(path, read, layers)
 
 
@@ -67,8 +72,8 @@ def _copper(
 ) -> Iterator[Measurement]:
     areas = [p.area for p in read.board.copper() if layer in p.layers]
     copper = _in_sensor(read, shapely.union_all(areas))
-    share = painted.symmetric_difference(copper).area / copper.area
-    yield of.figure("copper", share, 0, AREA_SHARE, "of the copper")
+    off = painted.symmetric_difference(copper).buffer(-_CHORD_MM).area
+    yield of.figure("copper", off, 0, PLACE_MM, "mm²", "differs from the board's")
 
 
 def _mask(of: Subject, read: ReadBoard, layer: str, open_: BaseGeometry) -> Iterator[Measurement]:
@@ -111,11 +116,15 @@ def _room(word: Word) -> BaseGeometry:
     return affinity.translate(affinity.rotate(flat, -word.angle_deg, origin=(0, 0)), *word.at)
 
 
-def _edge(path: str, read: ReadBoard, drawn: BaseGeometry) -> Measurement:
-    wanted = _in_sensor(read, shapely.union_all(list(read.board.edges))).bounds
-    pen = (np.subtract(drawn.bounds, wanted) * (-1, -1, 1, 1)).tolist()
-    off = max(pen) - min(pen)
-    return Measurement("orders.outline", path, off, 0, PLACE_MM, "mm", "from the board's edge")
+def _edge(path: str, outline: BaseGeometry, drawn: BaseGeometry) -> Iterator[Measurement]:
+    """The drawn edge, and what a router that follows the middle of its lines leaves or takes."""
+    rings = [line for part in shapely.get_parts(drawn) for line in part.interiors]
+    pen = np.subtract(drawn.bounds, outline.bounds) * (-1, -1, 1, 1)
+    inner = shapely.unary_union([shapely.Polygon(ring) for ring in rings])
+    left = inner.buffer(float(pen.mean())).symmetric_difference(outline).buffer(-_CHORD_MM)
+    of, pens = Subject("orders", path), float(np.ptp(pen))
+    yield of.figure("outline", pens, 0, PLACE_MM, "mm", "from the board's edge")
+    yield of.figure("routed", left.area, 0, PLACE_MM, "mm²", "differs from the board")
 
 
 def _drills(path: str, read: ReadBoard, layers: Mapping[str, bytes]) -> Iterator[Measurement]:

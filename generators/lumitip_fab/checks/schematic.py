@@ -4,8 +4,8 @@ from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
-from lumitip_fab.checks.board_read import names_of
-from lumitip_fab.checks.readers.kicad_board import KicadBoard, read_board
+from lumitip_fab.checks.board_read import ReadBoard, names_of, read_any
+from lumitip_fab.checks.readers.kicad_board import KicadBoard
 from lumitip_fab.checks.readers.kicad_sheet import Sheet, read_sheet
 from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design
@@ -20,12 +20,13 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         subject = f"boards/{name}/{name}.kicad_sch"
         try:
             sheet = read_sheet(outputs / subject)
-            board = read_board((outputs / subject).with_suffix(".kicad_pcb"))
+            read = read_any(outputs, design, name)
         except (OutputError, LookupError, ValueError) as error:
             yield unreadable("schematic.readable", subject, str(error))
             continue
-        yield count("schematic.parts", subject, list(_other_parts(sheet, board)), "parts")
-        yield count("schematic.nets", subject, list(_other_nets(sheet, board)), "nets")
+        yield count("schematic.parts", subject, list(_other_parts(sheet, read.board)), "parts")
+        yield count("schematic.fields", subject, list(_other_fields(sheet, read)), "fields")
+        yield count("schematic.nets", subject, list(_other_nets(sheet, read.board)), "nets")
 
 
 def _other_parts(sheet: Sheet, board: KicadBoard) -> Iterator[str]:
@@ -39,6 +40,29 @@ def _other_parts(sheet: Sheet, board: KicadBoard) -> Iterator[str]:
     for ref in sorted(drawn.keys() | placed.keys()):
         if drawn.get(ref) != placed.get(ref):
             yield f"{ref}: {drawn.get(ref)} in the schematic, {placed.get(ref)} on the board"
+
+
+def _other_fields(sheet: Sheet, read: ReadBoard) -> Iterator[str]:
+    """Fields by which a part is ordered that board or catalogue have otherwise, and parts that are
+    left out."""
+    for symbol in sheet.symbols:
+        drawn, part = dict(symbol.fields), read.parts.get(symbol.ref)
+        placed = {} if part is None else dict(part.fields)
+        number, lcsc = read.ordered(symbol.ref)
+        wanted = {
+            "Manufacturer": placed.get("Manufacturer", ""),
+            "MPN": placed.get("MPN", ""),
+            "LCSC": lcsc,
+        }
+        yield from (
+            f"{symbol.ref}: {field} {drawn.get(field, 'missing')}"
+            for field, value in wanted.items()
+            if drawn.get(field, "") != value
+        )
+        if number and wanted["MPN"] != number:
+            yield f"{symbol.ref}: MPN {wanted['MPN']} on the board"
+        if not symbol.placed:
+            yield f"{symbol.ref}: left out"
 
 
 def _other_nets(sheet: Sheet, board: KicadBoard) -> Iterator[str]:

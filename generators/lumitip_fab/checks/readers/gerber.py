@@ -1,6 +1,7 @@
 """Gerber and drill files as areas and holes."""
 
 import math
+import re
 import warnings
 from collections.abc import Iterable
 from functools import lru_cache
@@ -17,6 +18,7 @@ from shapely.geometry.base import BaseGeometry
 
 Hole = tuple[float, float, float]
 """x, y, diameter (mm)."""
+_REPEATED = re.compile(r"%SR(?!\*|X1Y1)")
 _STEPS = 32  # chords of a quarter circle
 
 
@@ -32,6 +34,8 @@ def gerber_area(text: str) -> BaseGeometry:
     dark: BaseGeometry = Polygon()
     run: list[BaseGeometry] = []
     adding = True
+    if _REPEATED.search(text):
+        raise ValueError("a part of it is repeated, which this reader does not follow")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:

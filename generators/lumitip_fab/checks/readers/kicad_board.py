@@ -80,6 +80,8 @@ class Part:
     """Such as `exclude_from_bom`."""
     terminals: tuple[Terminal, ...]
     models: tuple[Model, ...] = ()
+    fields: tuple[tuple[str, str], ...] = ()
+    """Its properties, by name."""
 
 
 @dataclass(frozen=True)
@@ -275,6 +277,7 @@ class _Reader:
             attributes=frozenset(words(child(node, "attr"))),
             terminals=tuple(self.terminal(pad, place) for pad in children(node, "pad")),
             models=tuple(map(_model, children(node, "model"))),
+            fields=tuple(properties.items()),
         )
 
     def terminal(self, node: Node, place: "shapes.Place") -> Terminal:

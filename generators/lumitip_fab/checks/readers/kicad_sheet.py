@@ -30,6 +30,10 @@ class Symbol:
     ref: str
     value: str
     footprint: str
+    fields: tuple[tuple[str, str], ...]
+    """Everything that is written of it, by name."""
+    placed: bool
+    """Whether it is not marked as left out."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +80,9 @@ def read_sheet(path: Path) -> Sheet:
             continue
         footprint = fields["Footprint"].rpartition(":")[2]  # without its library
         if unit == 1:
-            symbols.append(Symbol(fields["Reference"], fields["Value"], footprint))
+            placed_at_all = words(child(symbol, "dnp")) in ([], ["no"])
+            own = fields["Reference"], fields["Value"], footprint
+            symbols.append(Symbol(*own, tuple(fields.items()), placed_at_all))
         pins += [(f"{fields['Reference']}.{pin.number}", pin.at) for pin in placed]
     return Sheet(tuple(symbols), _nets(joined, names, pins))
 
