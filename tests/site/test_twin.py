@@ -132,6 +132,44 @@ def test_dragging_moves_the_object_and_chooses_no_cell(opened: Opened) -> None:
     assert marked(tab, "view") == [15]
 
 
+def test_each_drag_moves_the_object_as_far_as_the_pointer(opened: Opened) -> None:
+    """Text that an earlier drag selected would be dragged instead, and the object would stop."""
+    tab = opened("#cell-17", viewport={"width": 1440, "height": 900})
+    grid = tab.locator("#grid")
+    grid.scroll_into_view_if_needed()
+    box = grid.bounding_box()
+    assert box is not None
+    wide = float(str(grid.get_attribute("viewBox")).split()[2])
+    height = box["y"] + box["height"] / 2
+    for start, end in ((0.5, 0.3), (0.3, 0.6), (0.6, 0.4)):
+        before = tab.evaluate("GRASP.x")
+        tab.mouse.move(box["x"] + box["width"] * start, height)
+        tab.mouse.down()
+        tab.mouse.move(box["x"] + box["width"] * end, height + 20, steps=10)
+        tab.mouse.up()
+        assert tab.evaluate("GRASP.x") - before == pytest.approx((end - start) * wide, abs=0.2)
+    assert tab.evaluate("String(getSelection())") == ""
+
+
+def test_a_finger_moves_the_object_and_not_the_page(opened: Opened) -> None:
+    options = {"is_mobile": True, "has_touch": True, "viewport": {"width": 390, "height": 844}}
+    tab = opened("", **options)
+    tab.evaluate("byId('grid').scrollIntoView({ block: 'center' })")
+    box = tab.locator("#grid").bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] * 0.7
+    scrolled, before = tab.evaluate("[scrollY, GRASP.y]")
+    protocol = tab.context.new_cdp_session(tab)
+    for kind, up in (("Start", 0), *(("Move", 10 * n) for n in range(1, 11))):
+        touch = {"type": f"touch{kind}", "touchPoints": [{"x": x, "y": y - up}]}
+        protocol.send("Input.dispatchTouchEvent", touch)
+    protocol.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    assert tab.evaluate("scrollY") == scrolled
+    assert tab.evaluate("GRASP.y") - before > 5
+    margin = box["x"]
+    assert margin > 12, "room at the side of the grid, where a finger scrolls the page"
+
+
 def test_the_object_moves_a_pitch_beyond_the_cells(opened: Opened, site: Path) -> None:
     layout = Layout.load(site / "layout.json")
     tab = opened()
