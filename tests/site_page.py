@@ -8,6 +8,7 @@ from playwright.sync_api import Page
 
 Opened = Callable[..., Page]
 """`opened("#cell-17", folder, color_scheme="dark")`: the page in a browser."""
+SIZES = {"phone": {"width": 390, "height": 844}, "desk": {"width": 1440, "height": 900}}
 
 
 def axe() -> str:

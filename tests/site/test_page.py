@@ -20,12 +20,11 @@ from lumitip_fab.site.checks import check_rows
 from lumitip_fab.site.folder import Folder
 from lumitip_fab.site.tables import prints
 from lumitip_fab.site.targets import Targets
-from site_page import Opened, axe
+from site_page import SIZES, Opened, axe
 
 pytestmark = pytest.mark.slow
 
 MOST_BYTES = 8_000_000
-SIZES = {"phone": {"width": 390, "height": 844}, "desk": {"width": 1440, "height": 900}}
 
 
 @pytest.mark.parametrize("size", SIZES)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from site_page import Opened
+from site_page import SIZES, Opened
 
 pytestmark = pytest.mark.slow
 
@@ -48,3 +48,29 @@ def test_a_net_lights_up_on_its_board(opened: Opened) -> None:
     tab.locator("#check-table tbody .show").first.click()
     lit = tab.evaluate("all('[data-net].lit').map(e => e.getAttribute('data-net'))")
     assert lit and all(name.startswith("receiver:") for name in lit)
+
+
+LIT_IN_VIEW = """() => all("svg .lit").filter(element => {
+    const { left, right, top, bottom } = element.getBoundingClientRect();
+    return left >= 0 && top >= 0 && right <= innerWidth && bottom <= innerHeight;
+}).map(element => element.dataset.part || element.dataset.net)"""
+
+
+@pytest.mark.parametrize("viewport", SIZES.values(), ids=SIZES)
+def test_what_lights_up_on_a_board_is_in_view(opened: Opened, viewport: dict[str, int]) -> None:
+    tab = opened("", viewport=viewport)
+    for board in ("receiver", "flange", "emitter"):
+        tab.locator("#query").fill(f"board.clearance {board}")
+        tab.locator("#check-table tbody .show").first.click()
+        assert any(name.startswith(board) for name in tab.evaluate(LIT_IN_VIEW)), board
+    tab.get_by_role("button", name="Show circuit 74HC4051PW").click()
+    assert "receiver.U1" in tab.evaluate(LIT_IN_VIEW)
+    assert set(tab.evaluate("[...lumitip.model.marked]")) >= {"receiver.U1", "receiver.U4"}
+
+
+def test_a_body_without_a_drawing_is_shown_in_3d(opened: Opened) -> None:
+    tab = opened()
+    tab.locator("#query").fill("assembly.interference emitter")
+    tab.locator("#check-table tbody .show").first.click()
+    box = tab.locator("#canvas").bounding_box()
+    assert box is not None and 0 <= box["y"] < 720

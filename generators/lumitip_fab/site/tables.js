@@ -13,9 +13,9 @@ function show(names, from) {
   for (const element of all(".lit")) element.classList.remove("lit");
   for (const button of all(".show")) button.setAttribute("aria-pressed", "false");
   [shown.names, shown.from] = [names, from];
-  const lit = names.flatMap((name) =>
-    [...(parts.get(name) || nets.get(name) || []), ...panelsOf(name)]);
-  for (const element of lit) element.classList.add("lit");
+  const drawn = names.flatMap((name) => parts.get(name) || nets.get(name) || []);
+  const panels = names.flatMap(panelsOf);
+  for (const element of [...drawn, ...panels]) element.classList.add("lit");
   for (const listener of shown.listeners) listener(names);
   byId("shown").hidden = !names.length;
   if (!names.length) return;
@@ -23,9 +23,10 @@ function show(names, from) {
   const more = titles.length > 4 ? ` and ${titles.length - 4} more` : "";
   byId("shown-names").textContent = `Shown: ${titles.slice(0, 4).join(", ")}${more}`;
   from.setAttribute("aria-pressed", "true");
-  const view = shown.has(names[0]) ? byId("model") : null;
-  const place = view || (lit.length ? panelOf(lit[0]) : null);
-  place?.scrollIntoView({ block: "center" });
+  // Parts and nets of boards are small in 3D, so that their drawing goes first.
+  const place = drawn.find((element) => element.getClientRects().length)
+    || (shown.has(names[0]) ? byId("model") : panels[0] || (drawn[0] && panelOf(drawn[0])));
+  place?.scrollIntoView({ block: "center", inline: "center" });
 }
 
 document.addEventListener("click", (event) => {
