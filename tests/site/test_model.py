@@ -90,6 +90,80 @@ def test_the_whole_system_and_back(opened: Opened) -> None:
     assert not any(name.startswith(("gripper", "flange")) for name in bodies(tab))
 
 
+OUTSIDE = """() => {
+    const { model } = lumitip, outside = [];
+    for (const [name, body] of model.bodies) {
+        const { min, max } = new THREE.Box3().setFromObject(body);
+        for (const x of [min.x, max.x]) for (const y of [min.y, max.y]) for (const z of [min.z, max.z])
+            if (new THREE.Vector3(x, y, z).project(model.camera).toArray()
+                .some(v => Math.abs(v) > 1)) outside.push(name);
+    }
+    return outside;
+}"""
+
+
+def test_all_of_the_exploded_system_is_in_the_picture(opened: Opened) -> None:
+    tab = opened("", viewport={"width": 1440, "height": 900})
+    tab.locator("#look-all").click()
+    tab.locator("#explode").fill("100")
+    assert tab.evaluate(OUTSIDE) == []
+
+
+def test_the_face_of_a_finger_is_seen_without_its_film(opened: Opened) -> None:
+    tab = opened()
+    tab.get_by_role("button", name="Receiver face, film off").click()
+    shown = bodies(tab)
+    assert "receiver.film" not in shown and {"receiver.Q1", "receiver.board"} <= shown
+    assert not tab.locator('#switches [data-kind="receiver.film"]').is_checked()
+    tab.locator("#look-fingers").click()
+    assert {"receiver.film", "emitter.film"} <= bodies(tab)
+
+
+def test_a_cut_goes_through_a_finger_and_is_seen(opened: Opened) -> None:
+    """Both fingers, but for a cut along their faces; the half before it is taken away."""
+    tab = opened()
+    for axis in ("1", "2", "0"):
+        tab.locator("#cut").select_option(axis)
+        across, side = tab.evaluate(
+            """() => {
+                const { plane, bodies, camera } = lumitip.model;
+                const met = name =>
+                    plane.intersectsBox(new THREE.Box3().setFromObject(bodies.get(name)));
+                return [["emitter.board", "receiver.board"].filter(met).length,
+                    plane.distanceToPoint(camera.position)];
+            }"""
+        )
+        assert across >= (1 if axis == "0" else 2), axis
+        assert side < 0
+    labels = tab.locator("#switches label").all_text_contents()
+    assert "gripper (outline only)" in labels
+
+
+def test_a_marked_body_keeps_its_shading(opened: Opened) -> None:
+    tab = opened("", color_scheme="light", viewport={"width": 1440, "height": 900})
+    tab.locator("#query").fill("backing.min_wall emitter")
+    tab.locator("#check-table tbody .show").first.click()
+    tab.evaluate("byId('canvas').scrollIntoView({ block: 'center' })")
+    pixels = seen(tab)
+    red, green, blue = np.moveaxis(pixels, 2, 0)
+    marked_ = pixels[(blue - red > 60) & (abs(blue - green) < 50)].sum(axis=1)
+    assert len(marked_) > 2000
+    shades = np.bincount(marked_ // 12)
+    assert (shades > 60).sum() >= 4
+
+
+def test_two_marked_bodies_differ_in_colour(opened: Opened) -> None:
+    tab = opened()
+    tab.locator("#query").fill("assembly.interference emitter")
+    tab.locator("#check-table tbody .show").first.click()
+    colours = "['emitter.backing', 'emitter.silicone'].map(n => lumitip.model.bodies.get(n)"
+    one, other = tab.evaluate(f"{colours}.material.color.getHSL({{}}).h)")
+    assert abs(one - other) > 0.05
+    tab.keyboard.press("Escape")
+    kept = tab.evaluate(f"{colours}).map(b => b.material.color.equals(b.userData.colour))")
+    assert kept == [True, True]
+
+
 def test_a_cell_is_marked_and_followed_in_3d(opened: Opened) -> None:
     tab = opened("#cell-17", color_scheme="light", viewport={"width": 1440, "height": 900})
     tab.locator("#look-receiver").click()

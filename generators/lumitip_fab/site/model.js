@@ -58,12 +58,18 @@ function startModel() {
       byId("hit").textContent = hit.name;
       if (hit.cell !== null) choose(hit.cell);
     });
-  byId("explode").addEventListener("input", (e) => model.explode(e.target.valueAsNumber / 100));
+  byId("explode").addEventListener("input", (e) => {
+    model.explode(e.target.valueAsNumber / 100);
+    model.fit();
+  });
   const cut = () => {
     byId("cut-at").disabled = byId("cut").value === "";
     model.cut(byId("cut").value, byId("cut-at").valueAsNumber / 100);
   };
-  byId("cut").addEventListener("change", cut);
+  byId("cut").addEventListener("change", () => {
+    byId("cut-at").value = CUT_AT[byId("cut").value] ?? 50;
+    cut();
+  });
   byId("cut-at").addEventListener("input", cut);
   byId("look-fingers").addEventListener("click", () => {
     switched(isRest, false);
@@ -76,7 +82,8 @@ function startModel() {
   });
   for (const [finger, side] of [["emitter", -1], ["receiver", 1]]) {
     byId(`look-${finger}`).addEventListener("click", () => {
-      switched((kind) => kind.startsWith(`${finger}.`), true);
+      switched((kind) => kind.startsWith(`${finger}.`) && kind !== `${finger}.film`, true);
+      switched((kind) => kind === `${finger}.film`, false);
       switched((kind) => !kind.startsWith(`${finger}.`), false);
       model.look((name) => name.startsWith(`${finger}.`), side * Math.PI / 2, 0);
     });
@@ -84,6 +91,8 @@ function startModel() {
   switched(isRest, false);
 }
 
+// Where a cut begins, %: one along the faces lies between the fingers at 50 %.
+const CUT_AT = { 0: 75 };
 const isRest = (kind) => !FINGERS.includes(kind.split(".")[0]);
 
 // Kinds of bodies on or off, with their check boxes.
@@ -95,13 +104,18 @@ function switched(which, visible) {
   }
 }
 
+function restLabel(group, part) {
+  if (part === "body") return group;
+  return part === "envelope" ? `${group} (outline only)` : `${group} ${part}`;
+}
+
 // A check box for each kind of body, in the order of the file.
 function switches(model) {
   const groups = new Map(["emitter", "receiver", "rest"].map((title) => [title, []]));
   for (const kind of new Set([...model.bodies.keys()].map((name) => model.kindOf(name)))) {
     const [group, part] = kind.split(".");
     if (!isRest(kind)) groups.get(group).push([kind, part]);
-    else groups.get("rest").push([kind, `${group} ${part}`.replace(/ (body|envelope)$/, "")]);
+    else groups.get("rest").push([kind, restLabel(group, part)]);
   }
   for (const [title, entries] of groups) {
     if (!entries.length) continue;

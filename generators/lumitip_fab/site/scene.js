@@ -42,7 +42,7 @@ function materialFrom(colour) {
 function bodyFrom(geometry, material, name) {
   const body = new THREE.Mesh(geometry, material);
   body.name = name;
-  body.userData.colour = material.color.clone();
+  body.userData = { colour: material.color.clone(), opacity: material.opacity };
   const lines = new THREE.LineSegments(
     new THREE.EdgesGeometry(geometry, SHARP_DEG),
     new THREE.LineBasicMaterial({ color: 0x000000, transparent: true, opacity: 0.28 }),

@@ -5,6 +5,19 @@ const ASIDE = { robot: -3.2, coupling: -2, flange_lower: -1, flange_board: -0.6,
   gripper: 1.2, holder: 1.2 };
 const FINGERS = ["emitter", "receiver"];
 const ON_PARTS = 0.45; // of the distance from board to silicone
+const SHINE = 0.3; // opacity of what others hide of a marked body
+const [FEW, HUE_TURN] = [4, 0.11]; // marked bodies that have a hue each, and the step between two
+
+function ghostOf(geometry) {
+  const ghost = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({
+    transparent: true, depthTest: false, depthWrite: false,
+    stencilWrite: true, stencilFunc: THREE.NotEqualStencilFunc,
+    stencilZPass: THREE.ReplaceStencilOp,
+  }));
+  ghost.raycast = () => {};
+  ghost.renderOrder = 10;
+  return ghost;
+}
 
 class Viewer {
   constructor(box, renderer, { root, bodies }, athome) {
@@ -58,6 +71,11 @@ class Viewer {
     this.draw();
   }
 
+  // All that is visible, from where one looks.
+  fit() {
+    this.look(() => true, this.azimuth, this.height);
+  }
+
   toggle(kind, visible) {
     for (const [name, body] of this.bodies) {
       if (this.kindOf(name) === kind) body.visible = visible;
@@ -65,14 +83,16 @@ class Viewer {
     this.draw();
   }
 
+  // The half that is nearer is taken away, so that the cut is seen.
   cut(axis, share) {
     this.renderer.clippingPlanes = axis === "" ? [] : [this.plane];
     if (axis !== "") {
       const box = this.extent(() => true);
       const way = Number(axis);
       const [low, high] = [box.min.getComponent(way), box.max.getComponent(way)];
-      this.plane.normal.set(0, 0, 0).setComponent(way, -1);
-      this.plane.constant = low + share * (high - low);
+      const side = this.camera.position.getComponent(way) < this.target.getComponent(way) ? 1 : -1;
+      this.plane.normal.set(0, 0, 0).setComponent(way, side);
+      this.plane.constant = -side * (low + share * (high - low));
     }
     this.draw();
   }
@@ -149,27 +169,43 @@ class Viewer {
     this.sized = true;
   }
 
-  // Bodies in a colour, seen through all others.
+  // Bodies in a colour with their shading; what others hide of them shines through. Few bodies have
+  // a hue each.
   mark(names, colour) {
     const wanted = new Set(names.filter((name) => this.bodies.has(name)));
-    for (const name of new Set([...this.marked, ...wanted])) {
-      const body = this.bodies.get(name);
-      const on = wanted.has(name);
-      if (on) this.paint(body, colour);
-      else {
-        body.material.color.copy(body.userData.colour);
-        body.material.emissive.set(0x000000);
-      }
-      body.material.depthTest = !on;
-      body.material.transparent = on || body.material.opacity < 1; // drawn after what is clear
-      body.renderOrder = on ? 10 : 0;
-    }
+    for (const name of this.marked) if (!wanted.has(name)) this.unmark(this.bodies.get(name));
+    const turn = wanted.size > FEW ? 0 : HUE_TURN;
+    [...wanted].forEach((name, at) => {
+      const tint = new THREE.Color(colour).offsetHSL(turn * at, 0, 0);
+      this.paint(this.bodies.get(name), tint, SHINE);
+    });
     this.marked = wanted;
   }
 
-  paint(body, colour) {
-    body.material.color.set(0x000000);
-    body.material.emissive.set(colour);
+  unmark(body) {
+    const { material, userData } = body;
+    material.color.copy(userData.colour);
+    material.emissive.set(0x000000);
+    const { opacity } = userData;
+    Object.assign(material, { opacity, transparent: opacity < 1, stencilWrite: false });
+    body.renderOrder = 0;
+    if (userData.ghost) userData.ghost.visible = false;
+  }
+
+  // The body itself leaves its mark in the stencil, and its ghost is drawn elsewhere alone.
+  paint(body, colour, shine, stencilRef = 1) {
+    const { material, userData } = body;
+    material.color.set(colour).multiplyScalar(0.75);
+    material.emissive.set(colour).multiplyScalar(0.3);
+    Object.assign(material, {
+      opacity: Math.max(userData.opacity, 0.6), transparent: true, // drawn after what is clear
+      stencilWrite: true, stencilRef, stencilZPass: THREE.ReplaceStencilOp,
+    });
+    body.renderOrder = 9;
+    if (!userData.ghost) body.add(userData.ghost = ghostOf(body.geometry));
+    userData.ghost.visible = true;
+    userData.ghost.material.color.set(colour);
+    Object.assign(userData.ghost.material, { opacity: shine, stencilRef });
   }
 
   // A cell: its LED, its photodetector, and the line between them.
@@ -177,7 +213,7 @@ class Viewer {
     const { led, detector } = record.parts;
     this.mark([...extra, led, detector], colours.near);
     const ends = [led, detector].map((name) => this.bodies.get(name)).filter(Boolean);
-    for (const body of ends) this.paint(body, colours.on);
+    for (const body of ends) this.paint(body, colours.on, 1, 2);
     this.ends = ends;
     this.ray.material.color.set(colours.on);
     this.draw();
