@@ -3,20 +3,34 @@
 import math
 from typing import Any
 
-from lumitip_fab.checks.result import relative_margin
+from lumitip_fab.checks.result import NOISE, Measurement, relative_margin
 from lumitip_fab.site.folder import Checked, Folder
 from lumitip_fab.site.targets import Targets
 
+_AT_LIMIT_MM = 0.001 + NOISE
+_AT_LIMIT = 0.005  # of the limit
+
 
 def check_rows(folder: Folder, targets: Targets) -> list[dict[str, Any]]:
-    """The measurements, those that fail first, then by relative margin."""
-    return [_row(each, targets) for each in sorted(folder.checked or (), key=_rank)]
+    """The measurements, those that fail first, then by relative margin; those without one, and
+    those that are drawn at their limit, are last."""
+    return [_row(each, targets) for each in sorted(folder.checked or (), key=rank)]
 
 
-def _rank(checked: Checked) -> tuple[bool, float, str, str]:
+def rank(checked: Checked) -> tuple[int, float, str, str]:
+    """The place of a measurement in the table."""
     m = checked.measurement
     share = relative_margin(m)
-    return checked.passed, math.inf if share is None else share, m.check, m.subject
+    group = 0 if not checked.passed else 3 if share is None else 2 if at_limit(m) else 1
+    return group, math.inf if share is None else share, m.check, m.subject
+
+
+def at_limit(measurement: Measurement) -> bool:
+    """Whether a length is drawn as small as it may be, such as the width of a track: its margin of
+    0 says nothing of how well it was made."""
+    m = measurement
+    least = m.unit == "mm" and m.low > 0 and math.isinf(m.high)
+    return least and m.margin + NOISE >= 0 and m.margin <= min(_AT_LIMIT_MM, m.low * _AT_LIMIT)
 
 
 def _row(checked: Checked, targets: Targets) -> dict[str, Any]:

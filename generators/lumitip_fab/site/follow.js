@@ -111,14 +111,8 @@ function fromHash() {
   choose(Number(found[1]), false);
   return true;
 }
-window.addEventListener("hashchange", fromHash);
+window.addEventListener("hashchange", () => fromHash() && byId("cells").scrollIntoView());
 
-for (const id of ["front", "back", "fills", "bodies"]) {
-  const box = byId(id);
-  const apply = () => document.body.classList.toggle(`no-${id}`, !box.checked);
-  box.addEventListener("change", apply);
-  apply();
-}
 for (const element of all("svg .cell")) {
   element.setAttribute("role", "button");
   element.setAttribute("aria-pressed", "false");

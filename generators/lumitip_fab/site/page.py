@@ -39,6 +39,7 @@ from lumitip_fab.text import data_file
 
 SCRIPTS = (
     "follow.js",
+    "boards.js",
     "tables.js",
     "scene.js",
     "viewer.js",
@@ -50,6 +51,7 @@ SCRIPTS = (
     "grasp.js",
     "start.js",
 )
+LARGER = '<button type="button" class="larger" aria-pressed="false">larger</button>'
 _SVG = re.compile(r'<svg\b[^>]*\bviewBox="([^"]+)"[^>]*>(.*)', re.DOTALL)
 
 
@@ -105,6 +107,7 @@ def page(
         "prices": escape(stated),
         "figures": figure_table(figures),
         "files": "".join(file_lists(folder)),
+        "larger": LARGER,
         "style": data_file("site/page.css"),
         "script": "\n".join([colour_ramp(), *(data_file(f"site/{name}") for name in scripts)]),
         "data": _json(data),
@@ -174,7 +177,7 @@ def _board(folder: Folder, name: str, label: str, followed: Followed) -> str:
 def _auxiliary(folder: Folder) -> list[str]:
     return [
         f'<figure class="panel" id="board-{a.name}"><figcaption><h3>{a.name.capitalize()}</h3>'
-        f'<p class="soft">{escape(a.title)}, from the front</p></figcaption>'
+        f'<p class="soft">{escape(a.title)}. {LARGER}</p></figcaption>'
         + _board(folder, a.name, f"{a.title} from its front", Followed({}, {}))
         + "</figure>"
         for a in folder.design.auxiliary_boards

@@ -159,7 +159,7 @@ function headChecks() {
     head.append(button);
     return head;
   });
-  const place = Object.assign(document.createElement("th"), { scope: "col" });
+  const place = Object.assign(document.createElement("th"), { scope: "col", className: "go" });
   place.innerHTML = '<span class="hidden">place</span>';
   byId("check-table").tHead.rows[0].append(...heads, place);
 }

@@ -231,7 +231,7 @@ def table(
         for column, heading in enumerate(headings)
     )
     if any('class="go"' in each for each in rows):
-        head += '<th scope="col"><span class="hidden">place</span></th>'
+        head += '<th scope="col" class="go"><span class="hidden">place</span></th>'
     return (
         f'<div class="wide" tabindex="0" role="region" aria-label="Table: {escape(caption)}">'
         f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table></div>"

@@ -12,6 +12,7 @@ from pathlib import Path
 from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks.readers import kicad_shapes as shapes
+from lumitip_fab.checks.readers.kicad_mask import Opening, openings
 from lumitip_fab.checks.readers.kicad_shapes import (
     Node,
     child,
@@ -114,6 +115,7 @@ class KicadBoard:
     """Rectangle on each layer for a user's own use."""
     thickness_mm: float
     """Of the finished board; NaN if the file does not state it."""
+    openings: tuple[Opening, ...] = ()
 
     def copper(self) -> Iterator[Copper]:
         """Every piece of copper."""
@@ -182,6 +184,7 @@ class _Reader:
             tuple(self.plies()),
             regions,
             (numbers(child(child(self.root, "general") or [], "thickness")) or (math.nan,))[0],
+            tuple(openings(self.root)),
         )
 
     def plies(self) -> Iterator[Ply]:
