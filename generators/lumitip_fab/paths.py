@@ -1,6 +1,7 @@
 """Where the design folder is: the user's own, or the one that comes with the package; and where
 the firmware is."""
 
+import math
 import os
 import stat
 from importlib.resources import files
@@ -31,16 +32,25 @@ def read_input(path: Path) -> bytes:
     """The bytes of a file that a user wrote.
 
     Raises:
+        OSError: if it cannot be read, is no plain file, or is too long; the reason is its
+            `strerror`.
+    """
+    return read_plain(path, LARGEST_INPUT_BYTES)
+
+
+def read_plain(path: Path, most_bytes: float = math.inf) -> bytes:
+    """The bytes of a file.
+
+    Raises:
         OSError: if it cannot be read, or is no plain file but a folder, pipe or device, of which
-            some never end; the reason is its `strerror`.
+            some never end, or has more bytes than are allowed; the reason is its `strerror`.
     """
     found = path.stat()
     if not stat.S_ISREG(found.st_mode):
         kind = "folder" if path.is_dir() else "pipe or device"
         raise OSError(0, f"it is a {kind}, and a file is needed")
-    if found.st_size > LARGEST_INPUT_BYTES:
-        size = f"it has {found.st_size} bytes, and at most {LARGEST_INPUT_BYTES} are allowed"
-        raise OSError(0, size)
+    if found.st_size > most_bytes:
+        raise OSError(0, f"it has {found.st_size} bytes, and at most {most_bytes} are allowed")
     return path.read_bytes()
 
 

@@ -31,6 +31,8 @@ _OWN = (".", "~", "_autosave-")
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Count files that are missing or changed; move every STL by its matrix and see it in place."""
+    no_files = manifest.no_files(outputs)
+    yield count("manifest.kinds", ".", no_files, "pipes, devices or folders instead of files")
     recorded = manifest.read(outputs)
     if not recorded.files:
         yield unreadable("manifest.files", _FILE, "missing, or not of this version: build again")
@@ -43,7 +45,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     odd = [path for path, entry in sorted(recorded.files.items()) if not _placed(path, entry)]
     yield count("manifest.matrices", _FILE, odd, "matrices that place no file")
     for path, entry in sorted(recorded.files.items()):
-        if path in odd:
+        if path in odd or path in no_files:
             continue
         placed = path.startswith(("backing/", "interface/", "mould/", "mask/", "gauge/"))
         if path.endswith(".stl") and placed and entry.frame:

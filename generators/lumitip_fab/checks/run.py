@@ -16,12 +16,13 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from lumitip_fab.checks.result import Measurement
+from lumitip_fab.checks.result import Measurement, count
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import read_design
+from lumitip_fab.paths import read_plain
 from lumitip_fab.pipeline.dependencies import Dependencies, FieldHashes, RecordedDesign
 from lumitip_fab.pipeline.fingerprint import PACKAGE, installed_hash, whole_code_hash
-from lumitip_fab.pipeline.manifest import sha256_of, write_file
+from lumitip_fab.pipeline.manifest import no_files, sha256_of, write_file
 
 MODULES = (
     "manifest",
@@ -167,11 +168,11 @@ def _measurement(entry: dict[str, Any]) -> Measurement:
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        known = json.loads(path.read_text(encoding="utf-8"))
+        known = json.loads(read_plain(path).decode())
         for entry in known.values():
             tuple(map(_measurement, entry["measurements"]))
             "".join(entry["fields"])  # names, or a TypeError
-    except (OSError, ValueError, TypeError, AttributeError, KeyError):
+    except (OSError, ValueError, TypeError, AttributeError, KeyError, RecursionError):
         return {}
     return dict(known)
 
@@ -191,13 +192,24 @@ def run_checks(
         OutputError: if there is no usable `design.json`.
     """
     design = read_design(out / "design.json")
-    found = {name: memory.recalled(name, design) if memory else None for name in modules}
+    found: dict[str, tuple[Measurement, ...] | None] = dict.fromkeys(modules)
+    found |= {name: memory.recalled(name, design) for name in found if memory}
+    found |= _blocked(found, out)
     anew = [name for name, known in found.items() if known is None]
     for name, (measured, fields) in _measured(out, design, anew, cores):
         found[name] = measured
         if memory and not any(m.check == f"{name}.{CRASH}" for m in measured):
             memory.keep(name, measured, design, fields)
     return Outcome(tuple(m for measured in found.values() for m in measured or ()))
+
+
+def _blocked(modules: Iterable[str], out: Path) -> dict[str, tuple[Measurement, ...]]:
+    """The failed measurement of each module that would open what nobody can read to an end;
+    `manifest` opens plain files alone."""
+    odd = no_files(out)
+    shut = {name: [p for p in odd if _reads_it(name, p)] for name in modules if name != "manifest"}
+    unit = "pipes, devices or folders instead of files: nothing was measured"
+    return {name: (count(f"{name}.kinds", ".", p, unit),) for name, p in shut.items() if p}
 
 
 def _measured(
@@ -252,9 +264,12 @@ def modules_reading(paths: Iterable[str]) -> Iterator[str]:
     """The check modules that open any of these files (relative to the output folder)."""
     touched = tuple(paths)
     for name in MODULES:
-        patterns = (*reads(name), "design.json")
-        if any(fnmatch(path, pattern) for path in touched for pattern in patterns):
+        if any(path == "design.json" or _reads_it(name, path) for path in touched):
             yield name
+
+
+def _reads_it(module: str, path: str) -> bool:
+    return any(fnmatch(path, pattern) for pattern in reads(module))
 
 
 def _module(name: str) -> ModuleType:

@@ -2,6 +2,7 @@
 parameters to change, rated force, price."""
 
 import csv
+import io
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from lumitip_fab.checks.run import Outcome
 from lumitip_fab.cli.report import figure, tightness
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.errors import OutputError
+from lumitip_fab.paths import read_plain
 from lumitip_fab.text import table_of
 
 TABLES = "cli/summary.toml"
@@ -118,8 +120,8 @@ def _force(out: Path) -> Iterator[str]:
 def _price(out: Path) -> str:
     """The sum of the bill of materials, with the date and trust that it states."""
     try:
-        with (out / BILL).open(encoding="utf-8", newline="") as file:
-            total = [row for row in csv.reader(file) if row and row[0] == "total"]
+        file = io.StringIO(read_plain(out / BILL).decode(), newline="")
+        total = [row for row in csv.reader(file) if row and row[0] == "total"]
         note, price = total[-1][4], float(total[-1][-1])
     except (OSError, ValueError, IndexError, csv.Error):
         return f"price: {out / BILL} has no total"

@@ -12,6 +12,7 @@ from lumitip.layout import Layout
 from lumitip_fab.catalogue.record import Strict
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
+from lumitip_fab.paths import read_plain
 
 T = TypeVar("T")
 _DECIMALS = 9  # a picometre: keeps curves smooth, drops the noise of arithmetic
@@ -58,7 +59,7 @@ def read_design(path: Path) -> Design:
         OutputError: if it is missing or was not written by this version.
     """
     try:
-        return _decoded(json.loads(path.read_text(encoding="utf-8")), Design)
+        return _decoded(json.loads(read_plain(path).decode()), Design)
     except FileNotFoundError as error:
         raise OutputError(f"{path}: no such file: build the design first") from error
     except (OSError, ValueError, KeyError, TypeError, ArithmeticError, RecursionError) as error:

@@ -91,12 +91,14 @@ def build(
     Raises:
         InputError: if the input is rejected; then nothing is written.
         BuildError: if an artefact could not be made.
-        OutputError: if the folder cannot be written, or `only` names no step.
+        OutputError: if the folder cannot be written, has a pipe, device or folder in the place of
+            a file, or `only` names no step.
     """
     _require_known(only, steps)
     before = unchanged(out, origin_hash)
     if before:
         return Report(before.origin, (), (), (), tuple(before.tasks))
+    _require_files(out)
     design, documents = resolved()
     try:
         with locked(out):
@@ -117,6 +119,14 @@ def _require_known(only: Collection[str], steps: "tuple[Step, ...]") -> None:
     if unknown:
         raise OutputError(
             f"--only: no step is called {', '.join(unknown)}; the steps are {', '.join(names)}"
+        )
+
+
+def _require_files(out: Path) -> None:
+    if odd := manifest.no_files(out):
+        raise OutputError(
+            f"{out / odd[0]}: is a pipe, device or folder in the place of a file; nothing was "
+            "written. Remove it, or choose another folder with --out."
         )
 
 

@@ -14,6 +14,7 @@ from lumitip_fab.paths import (
     firmware_sources,
     parts_folders,
     read_input,
+    read_plain,
     resolved,
 )
 from lumitip_fab.pipeline import manifest
@@ -98,7 +99,7 @@ STAMP = ".built"
 def unchanged(out: Path, fingerprint: str) -> manifest.Manifest | None:
     """The manifest of a folder that this input gave, if nobody has changed a file since."""
     try:
-        stamp = (out / STAMP).read_text(encoding="utf-8")
+        stamp = read_plain(out / STAMP).decode()
     except (OSError, ValueError):
         return None
     before = manifest.read(out)

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+import stat
 import tempfile
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path, PurePath
@@ -11,6 +12,7 @@ import numpy as np
 
 from lumitip_fab.design.encoding import canonical, encoded
 from lumitip_fab.design.frames import Matrix
+from lumitip_fab.paths import read_plain
 from lumitip_fab.pipeline.artefact import Artefact, Facts
 from lumitip_fab.pipeline.dependencies import Dependencies
 
@@ -108,7 +110,7 @@ def read(out: Path) -> Manifest:
     """The manifest of an output folder, without entries that no build writes; an empty one where
     there is none that can be used."""
     try:
-        record = json.loads((out / NAME).read_text(encoding="utf-8"))
+        record = json.loads(read_plain(out / NAME).decode())
         if record["schema_version"] != SCHEMA_VERSION:
             return Manifest({}, {})
         entries = {path: Entry(**values) for path, values in record["files"].items()}
@@ -119,7 +121,7 @@ def read(out: Path) -> Manifest:
         }
         origin = Origin(**{f.name: str(record[f.name]) for f in fields(Origin)})
         return Manifest(files, tasks, origin)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return Manifest({}, {})
 
 
@@ -127,6 +129,22 @@ def _usable(path: str, entry: Entry) -> bool:
     """Whether a file is named that can lie in an output folder."""
     inside = "\0" not in path and ".." not in PurePath(path).parts and path[:1] != "/"
     return inside and isinstance(entry.sha256, str) and isinstance(entry.frame, str)
+
+
+def no_files(out: Path) -> list[str]:
+    """Paths in an output folder that nobody can read to an end: pipes, devices and links to them,
+    and folders in the place of a file that the manifest lists."""
+    listed = {NAME, *read(out).files}
+    there = {path.relative_to(out).as_posix() for path in out.rglob("*")}
+    return sorted(p for p in there | listed if _no_file(out / p, p in listed))
+
+
+def _no_file(path: Path, listed: bool) -> bool:
+    try:
+        mode = path.stat().st_mode
+    except OSError:  # missing
+        return False
+    return not stat.S_ISREG(mode) and (listed or not stat.S_ISDIR(mode))
 
 
 def write(out: Path, manifest: Manifest) -> None:
