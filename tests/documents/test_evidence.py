@@ -19,7 +19,7 @@ TEXT = PAGE.read_text("utf-8")
 PAGES = {
     page: page.read_text("utf-8")
     for page in (README, *DOCS)
-    if page not in (PAGE, MAP, ROOT / "docs/glossary.md")
+    if page not in (PAGE, ROOT / "docs/glossary.md")
 }
 LEVELS = [
     "Measured on hardware (published)",
@@ -82,7 +82,8 @@ def figures(section: Section) -> list[str]:
 
 def with_figures(pages: dict[Path, str]) -> dict[tuple[Path, str], Section]:
     """Sections with a figure, by page and anchor, in the order of the map."""
-    order = [README, *((MAP.parent / link.file).resolve() for link in links(MAP.read_text()))]
+    tables = MAP.read_text("utf-8").partition("\n## ")[2]
+    order = [MAP, README, *((MAP.parent / link.file).resolve() for link in links(tables))]
     return {
         (page, section.anchor): section
         for page in sorted(pages, key=order.index)

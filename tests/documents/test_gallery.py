@@ -1,6 +1,7 @@
 """The gallery: its figures are those of the presets, and each preset is shown."""
 
 import json
+import re
 import tomllib
 from collections.abc import Callable
 from html import unescape
@@ -63,3 +64,15 @@ def test_the_search_by_goals_states_the_same_errors() -> None:
         # The search also takes the exposure, which is 0.5 % below that of the published design.
         figures = [FIGURES[name]["edge_mm"], FIGURES[name]["cable_mm"]]
         assert stated == pytest.approx(figures, abs=0.0015)
+
+
+def test_the_map_states_price_time_and_errors_of_the_default_design() -> None:
+    text = " ".join((FILE.parents[1] / "index.md").read_text("utf-8").split())
+    found = FIGURES["fingertip"]
+    price, hours = (
+        float(re.search(pattern, text)[1])  # type: ignore[index]
+        for pattern in (r"about (\d+) EUR", r"some (\d+) h of printing")
+    )
+    assert price == pytest.approx(found["price"], rel=0.1)
+    assert hours == pytest.approx(found["print_h"], abs=0.5)
+    assert f"edges to {found['edge_mm']:.2f} mm and cables to {found['cable_mm']:.2f} mm" in text
