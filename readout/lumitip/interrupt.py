@@ -3,6 +3,7 @@
 Imports little: until `leave_on_interrupt` is called, Python answers Ctrl-C with a traceback.
 """
 
+import _thread
 import os
 import signal
 import sys
@@ -49,8 +50,8 @@ class InterruptGuard:
     """Raises `KeyboardInterrupt` on the first SIGINT, and ends the process on the second.
 
     A context manager for the main thread; on other threads it does nothing. During an import it
-    waits for the end of that: modules written in C may drop an exception, and the command would
-    go on.
+    waits for the end of that. Code written in C may drop an exception, and the command would go
+    on: then it raises another.
     """
 
     def __init__(self) -> None:
@@ -59,12 +60,15 @@ class InterruptGuard:
         self._before: Any = None
         self._outside: FrameType | None = None
         self._hook = sys.unraisablehook
+        self._inside = _thread.allocate_lock()
+        """Held within the block."""
 
     def __enter__(self) -> "InterruptGuard":
         import threading
 
         if threading.current_thread() is threading.main_thread():
             self._outside = sys._getframe(1)
+            self._inside.acquire()
             self._hook, sys.unraisablehook = sys.unraisablehook, self._unraisable
             self._before = signal.signal(signal.SIGINT, self._interrupt)
         return self
@@ -75,6 +79,7 @@ class InterruptGuard:
         if self._before is not None:
             signal.signal(signal.SIGINT, self._before)
             sys.unraisablehook = self._hook
+            self._inside.release()
         self._outside = None
 
     def _interrupt(self, _: int, frame: "FrameType | None") -> None:
@@ -84,7 +89,18 @@ class InterruptGuard:
             _interrupt_again()
             return
         self.interrupted = True
+        # Not by `threading`, whose locks this thread may hold.
+        _thread.start_new_thread(self._raise_again, (_thread.get_ident(),))
         raise KeyboardInterrupt
+
+    def _raise_again(self, main: int) -> None:
+        """Interrupt a main thread that goes on within the block and handles no exception."""
+        while not self._inside.acquire(timeout=_AGAIN_S):
+            if sys._current_exceptions().get(main) in (None, (None, None, None)):
+                self.interrupted = False
+                _interrupt_main()
+                return
+        self._inside.release()
 
     def _is_importing(self, frame: "FrameType | None") -> bool:
         while frame is not None and frame is not self._outside:

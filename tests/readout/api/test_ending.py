@@ -1,8 +1,11 @@
-"""A command ends in order while a daemon thread is within C++ code, as numpy's is."""
+"""A command ends in order: while a daemon thread is within C++ code, as numpy's is, when something
+drops the exception of Ctrl-C, and while it cleans up."""
 
 import subprocess
 import sys
 from pathlib import Path
+
+import pytest
 
 from programs import program
 
@@ -53,3 +56,44 @@ def _run(folder: Path, end: str) -> "subprocess.CompletedProcess[str]":
         timeout=60,
         check=False,
     )
+
+
+DROPS = """
+import os, signal, threading
+from lumitip import cli
+
+def run(_):
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+        threading.Event().wait()
+    except BaseException:
+        print("dropped", flush=True)
+    threading.Event().wait()
+
+cli._run_command = run
+cli.run()
+"""
+CLEANS = """
+import os, signal, threading, time
+from lumitip import cli
+
+def run(_):
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+        threading.Event().wait()
+    finally:
+        for _ in range(5):
+            time.sleep(0.1)
+        print("clean", flush=True)
+
+cli._run_command = run
+cli.run()
+"""
+
+
+@pytest.mark.parametrize(("code", "printed"), [(DROPS, "dropped\n"), (CLEANS, "clean\n")])
+def test_an_interrupt_is_neither_lost_nor_raised_twice(code: str, printed: str) -> None:
+    ended = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (ended.returncode, ended.stdout, ended.stderr) == (130, printed, "")
