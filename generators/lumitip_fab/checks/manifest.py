@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterator, Mapping
+from fnmatch import fnmatchcase
 from pathlib import Path, PurePath
 
 import numpy as np
@@ -12,6 +13,7 @@ from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.design.frames import Matrix, applied
 from lumitip_fab.errors import OutputError
+from lumitip_fab.paths import packaged_design
 from lumitip_fab.pipeline import manifest
 
 Vector = NDArray[np.float64]
@@ -21,12 +23,14 @@ _FILE = "manifest.json"
 _PLACE_MM = 0.05
 _SQUARE = 1e-6
 _SOLIDS = (".stl", ".3mf", ".step")
-_SENT = (*_SOLIDS, ".pdf", ".dxf", ".zip", ".kicad_pcb", ".ino")
-"""Kinds of file from which somebody makes something, wherever they lie."""
-_RECORDS = (".json", ".xml", ".toml", "")
-"""Kinds of which people and programs keep reports and settings beside the design's files."""
-_OWN = (".", "~", "_autosave-")
-"""Beginnings of the names of files that editors keep while they work."""
+_REPORTS = (manifest.NAME, *manifest.REPORTS, "README.md", "bench-tasks/*")
+"""What else this project writes into an output folder, by `make outputs` and `make bench`, and the
+page of the folder `outputs` in its source."""
+_EDITORS = (
+    *(".*", "~*", "*~", "#*#", "_autosave-*", "*.bak", "*-bak", "*.lck", "*-backups"),
+    *("*.kicad_prl", "fp-info-cache", "Thumbs.db", "desktop.ini"),
+)
+"""Names of files and folders that editors, KiCad and desktops keep for themselves."""
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -41,7 +45,12 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     changed = [p for p, e in recorded.files.items() if not _as_listed(outputs / p, e)]
     note = ", ".join(changed[:3]) or f"of {len(recorded.files)}"
     yield Measurement("manifest.files", _FILE, len(changed), 0, 0, "missing or changed", note)
-    yield count("manifest.strays", ".", sorted(_strays(outputs, recorded.files)), "files")
+    yield count(
+        "manifest.strays",
+        ".",
+        sorted(_strays(outputs, recorded.files)),
+        "files of no build: move them elsewhere",
+    )
     odd = [path for path, entry in sorted(recorded.files.items()) if not _placed(path, entry)]
     yield count("manifest.matrices", _FILE, odd, "matrices that place no file")
     for path, entry in sorted(recorded.files.items()):
@@ -69,24 +78,28 @@ def _placed(path: str, entry: manifest.Entry) -> bool:
 
 
 def _strays(outputs: Path, listed: Mapping[str, manifest.Entry]) -> Iterator[str]:
-    """Files of no build that could be sent or printed for one of the design's: of a kind that is
-    ordered or made from, or of one that is listed in their folder."""
-    kinds = {(path.parent, path.suffix) for path in map(PurePath, listed)}
+    """Files of no build, any of which could be sent, printed or compiled with the design's."""
     for top, folders, names in os.walk(outputs):
-        folder = PurePath(os.path.relpath(top, outputs))
-        folders[:] = [f for f in folders if not _others(outputs / folder / f)]
-        for name in names:
-            path = (folder / name).as_posix()
-            kind = folder, PurePath(name).suffix
-            sent = kind[1] in _SENT or (kind in kinds and kind[1] not in _RECORDS)
-            if sent and path not in listed and not name.startswith(_OWN):
+        folder = Path(top)
+        folders[:] = [f for f in folders if not _others(folder / f)]
+        for path in ((folder / name).relative_to(outputs).as_posix() for name in names):
+            if path not in listed and not _kept(path):
                 yield path
+
+
+def _kept(path: str) -> bool:
+    """Whether a file is a report, an editor's, or the user's own catalogue beside its output."""
+    own = path.startswith("parts/") and (packaged_design() / path).is_file()
+    return own or _named(path, _REPORTS) or _named(PurePath(path).name, _EDITORS)
 
 
 def _others(folder: Path) -> bool:
     """Whether a folder is hidden, an editor's, or holds another design's outputs."""
-    theirs = folder.name.startswith(_OWN) or folder.name.endswith("-backups")
-    return theirs or (folder / manifest.NAME).is_file()
+    return _named(folder.name, _EDITORS) or (folder / manifest.NAME).is_file()
+
+
+def _named(name: str, patterns: tuple[str, ...]) -> bool:
+    return any(fnmatchcase(name, pattern) for pattern in patterns)
 
 
 def _frame(outputs: Path, path: str, matrix: Matrix, design: Design) -> Measurement:
