@@ -46,7 +46,7 @@ EDITS = [
     (LAYOUT, "    4, 2, 6,", "    2, 4, 6,", {"channels"}),
     (LAYOUT, "    0, 0, 0,", "    1, 0, 0,", {"channels"}),
     (LAYOUT, "    4, 2, 6,", "    2, 6,", {"channels"}),
-    (LAYOUT, "CELLS = 32;", "CELLS = 31;", {"channels"}),
+    (LAYOUT, "CELLS = 32;", "CELLS = 31;", {"channels", "form"}),
     (LAYOUT, "A0, A1", "A1, A0", {"pins"}),
     (LAYOUT, "A2, A3", "A2, A3, A4", {"pins"}),
     (LAYOUT, "6, 7, 8", "8, 7, 6", {"pins"}),
@@ -58,8 +58,8 @@ EDITS = [
     (LAYOUT, "LINE_PF = 75;", "LINE_PF = 7;", {"converter"}),
     (LAYOUT, 'LAYOUT_HASH[] = "', 'LAYOUT_HASH[] = "0', {"hash"}),
     (PROTOCOL, 'PROTOCOL_HASH[] = "', 'PROTOCOL_HASH[] = "0', {"hash"}),
-    (PROTOCOL, "DESIGN_CODE = 0x", "DESIGN_CODE = 0x1", {"hash"}),
-    (PROTOCOL, "DESIGN_HASH[8] = {", "DESIGN_HASH[8] = {0x00, ", {"hash"}),
+    (PROTOCOL, "DESIGN_CODE = 0x", "DESIGN_CODE = 0x1", {"hash", "form"}),
+    (PROTOCOL, "DESIGN_HASH[8] = {", "DESIGN_HASH[8] = {0x00, ", {"hash", "form"}),
     (PROTOCOL, '"Lumitip"', '"lumitip"', {"name"}),
     (LAYOUT, "MUXES = 4;", "MUXES = 4", {"converter", "form"}),
     (LAYOUT, "    0, 0, 0,", "    0 0, 0,", {"form"}),
@@ -73,9 +73,21 @@ EDITS = [
     (PROTOCOL, "MAGIC = 0x4c", "MAGIC = 0x4d", {"protocol"}),
     (PROTOCOL, "VERSION = 2", "VERSION = 3", {"protocol"}),
     (PROTOCOL, "7d1c0002", "7d1c0004", {"protocol"}),
-    (PROTOCOL, "WIRING_SUM = 0x", "WIRING_SUM = 0x1", {"protocol"}),
+    (PROTOCOL, "WIRING_SUM = 0x", "WIRING_SUM = 0x1", {"protocol", "form"}),
     (PROTOCOL, '"ecbc"', '"ecbd"', {"protocol"}),
     (PROTOCOL, '"ecbc";', '"ecbc;', {"protocol", "form"}),
+    (LAYOUT, "uint8_t CHANNEL[", "uint8 CHANNEL[", {"form"}),
+    (LAYOUT, "uint8_t CHANNEL[", "bool CHANNEL[", {"form"}),
+    (LAYOUT, "uint32_t PULL_UP_OHM", "uint8_t PULL_UP_OHM", {"form"}),
+    (LAYOUT, "CHANNELS = 8;", "CHANNELS = 70000;", {"converter", "form"}),
+    (LAYOUT, "ADC_BITS = 12;", "ADC_BITS = 012;", {"form"}),
+    (LAYOUT, "MUXES = 4;", "MUXES = {4};", {"converter", "form"}),
+    (LAYOUT, "#include <stdint.h>\n", "", {"form"}),
+    (LAYOUT, "#pragma once\n", "", {"form"}),
+    (LAYOUT, "#include <stdint.h>\n", "#include <stdint.h>\n#define loop loop_\n", {"form"}),
+    (LAYOUT, "in frame order.", "in frame order.\\", {"channels", "form"}),
+    (PROTOCOL, "uint8_t VERSION", "uint1_t VERSION", {"form"}),
+    (PROTOCOL, "constexpr uint8_t VERSION = 2;", "", {"protocol", "form"}),
     ("device.h", '#include "cobs.h"', '#include "cops.h"', {"sources"}),
     ("firmware.ino", "device.poll();", "device.poll()", {"sources"}),
     ("README.md", "V", "mV", {"sources"}),
@@ -95,6 +107,13 @@ def test_a_damage_fails_exactly_these_checks(
     assert before in text
     path.write_text(text.replace(before, after, 1))
     assert failing(damaged_sketch) == fails
+
+
+def test_a_constant_that_is_used_before_it_is_there(damaged_sketch: Path) -> None:
+    path, line = damaged_sketch / "firmware" / LAYOUT, "constexpr uint16_t CELLS = 32;\n"
+    text = path.read_text()
+    path.write_text(text.replace(line, "").replace("}  // namespace", f"{line}}}  // namespace"))
+    assert failing(damaged_sketch) == {"form"}
 
 
 @pytest.mark.parametrize(

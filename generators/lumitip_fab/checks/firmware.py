@@ -5,41 +5,76 @@ in `layout`."""
 import math
 import re
 from binascii import crc_hqx
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from lumitip.layout import Layout
 from lumitip.protocol import bluetooth, packet
+from lumitip_fab.checks.readers.header import faults, uncommented
 from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.paths import firmware_sources
 from lumitip_fab.pipeline.manifest import sha256_of
 
 READS = ("firmware/*",)
-_COMMENT = re.compile(r"//.*")
-_VALUE = r'(?:\w+|"[^"]*"|\{\s*\w+(?:,\s*\w+)*,?\s*\})'
-_HEADER = re.compile(
-    r"(?:\s*(?:#(?:pragma once|include <stdint\.h>|ifndef \w+|endif|define .*)(?=\s)"
-    rf"|namespace lumitip \{{|\}}|constexpr \w+ \w+(?:\[\w*\])? = {_VALUE};))*\s*"
-)
-_NAMED = re.compile(r"^(?:#define|constexpr \w+) (\w+)", re.MULTILINE)
 _LAYOUT, _PROTOCOL = "firmware/layout.h", "firmware/protocol.h"
+_SETTINGS = {
+    _LAYOUT: (
+        "LUMITIP_ADC_PINS",
+        "LUMITIP_SELECT_PINS",
+        "LUMITIP_EMITTER_PIN",
+        "LUMITIP_EMITTER_US",
+        "LUMITIP_PERIOD_US",
+    ),
+    _PROTOCOL: ("LUMITIP_DEVICE_NAME",),
+}
+_TYPES = {
+    _LAYOUT: {
+        "LAYOUT_HASH": "char[]",
+        "CELLS": "uint16_t",
+        "MUXES": "uint16_t",
+        "SELECT_LINES": "uint8_t",
+        "CHANNELS": "uint16_t",
+        "ADC_BITS": "uint8_t",
+        "PULL_UP_OHM": "uint32_t",
+        "LINE_PF": "uint32_t",
+        "DETECTOR_US": "uint32_t",
+        "MUX": "uint16_t[CELLS]",
+        "CHANNEL": "uint8_t[CELLS]",
+    },
+    _PROTOCOL: {
+        "MAGIC": "uint8_t",
+        "VERSION": "uint8_t",
+        "DESIGN_CODE": "uint16_t",
+        "DESIGN_HASH": "uint8_t[8]",
+        "SERVICE_UUID": "char[]",
+        "FRAMES_UUID": "char[]",
+        "STATUS_UUID": "char[]",
+        "LEGACY_SERVICE_UUID": "char[]",
+        "LEGACY_FRAMES_UUID": "char[]",
+        "PROTOCOL_HASH": "char[]",
+        "WIRING_SUM": "uint16_t",
+    },
+}
+"""Type of each constant, as the shared files of the sketch use it."""
 _SKETCH = "firmware/firmware.ino"
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Read both headers as a compiler would, and hold them against the cells."""
     layout = design.layout
-    wired, protocol = (_COMMENT.sub("", _text(outputs / f)) for f in (_LAYOUT, _PROTOCOL))
+    wired, protocol = (uncommented(_text(outputs / f)) for f in (_LAYOUT, _PROTOCOL))
     yield _channels(wired, layout)
     yield _pins(wired, layout, design)
     yield _converter(wired, layout, design)
     yield _hash(wired, protocol, layout)
-    name = re.search(r'#define LUMITIP_DEVICE_NAME "(.*)"$', protocol, re.MULTILINE)
+    name = re.search(
+        r'#define LUMITIP_DEVICE_NAME "((?:[^"\\]|\\.)*)"[ \t]*$', protocol, re.MULTILINE
+    )
     same = name is not None and _read_string(name[1]) == design.controller.name.encode()
     yield _faults("firmware.name", _PROTOCOL, int(not same), "Bluetooth name")
     yield _protocol(protocol, layout)
-    yield _form(wired, protocol)
+    yield _form({_LAYOUT: wired, _PROTOCOL: protocol})
     yield _sources(outputs)
 
 
@@ -122,18 +157,12 @@ def _protocol(text: str, layout: Layout) -> Measurement:
     return _faults("firmware.protocol", _PROTOCOL, len(wrong), ", ".join(wrong) or "UUIDs, sums")
 
 
-def _form(*headers: str) -> Measurement:
-    """Whether a compiler can read both headers: constants, and settings with a balanced `#if`, each
-    name once."""
-    wrong = 0
-    for text in headers:
-        names = _NAMED.findall(text)
-        wrong += _HEADER.fullmatch(text) is None
-        wrong += text.count("#ifndef") != text.count("#endif")
-        wrong += text.count("{") != text.count("}")
-        wrong += text.count("namespace") != 1
-        wrong += len(set(names)) != len(names)
-    return _faults("firmware.form", _LAYOUT, wrong, "constants and settings alone")
+def _form(headers: Mapping[str, str]) -> Measurement:
+    """Whether a compiler can read both headers and takes each value as it is."""
+    wrong = [
+        fault for f, text in headers.items() for fault in faults(text, _SETTINGS[f], _TYPES[f])
+    ]
+    return count("firmware.form", _LAYOUT, wrong, "faults")
 
 
 def _sources(outputs: Path) -> Measurement:
