@@ -1,5 +1,6 @@
 """Damage the robot's model, and exactly the right checks fail."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -23,6 +24,7 @@ EVERY = {
     "open",
     "mass",
     "centre",
+    "inertia",
     "reach",
     "bulk",
     "macros",
@@ -76,6 +78,24 @@ def in_both(old: str, new: str) -> Damage:
     return damage
 
 
+def substituted(pattern: str, by: str, *files: str, count: int = 1) -> Damage:
+    """Replace what a pattern finds, in each file, with which they agree again."""
+
+    def damage(folder: Path) -> None:
+        for file in files or (URDF, MACROS):
+            text, found = re.subn(pattern, by, (folder / file).read_text(), count=count)
+            assert found
+            (folder / file).write_text(text)
+
+    return damage
+
+
+def placed(kind: str, place: str) -> Damage:
+    """The first body of a kind somewhere else, in the URDF and in its macros."""
+    name = rf'(<{kind} name="[^"]*">)'
+    return substituted(name, rf"\1<origin {place} />")
+
+
 def heavier(folder: Path) -> None:
     """The first finger's mass times ten."""
     text = (folder / URDF).read_text()
@@ -116,9 +136,46 @@ DAMAGES: tuple[tuple[str, Damage, set[str]], ...] = (
         {"facing", "seat", "closed", "open", "slide"},
     ),
     ("slides aside", edited(URDF, '<axis xyz="0 ', '<axis xyz="0.1 '), {"slide"}),
-    ("short travel", edited(URDF, 'upper="0.039', 'upper="0.038', 2), {"open"}),
+    ("short travel", edited(URDF, 'upper="0.039', 'upper="0.038', 2), {"open", "limits"}),
     ("weaker", edited(URDF, 'effort="235"', 'effort="23"'), {"limits"}),
     ("one faster", edited(URDF, 'velocity="0.15"', 'velocity="0.2"'), {"limits"}),
+    ("both faster", edited(URDF, 'velocity="0.15"', 'velocity="0.45"', 2), {"limits"}),
+    (
+        "one ends late, one early",
+        substituted(r'upper="0\.039(?s:(.*?))upper="0\.039', r'upper="0.038\1upper="0.040', URDF),
+        {"limits"},
+    ),
+    ("mimics backwards", edited(URDF, "<mimic ", '<mimic multiplier="-1" '), {"tree"}),
+    ("mimics with an offset", edited(URDF, "<mimic ", '<mimic offset="0.01" '), {"tree"}),
+    ("another robot", edited(URDF, 'robot name="lumitip"', 'robot name="other"'), {"tree"}),
+    ("MuJoCo forgets folders", edited(URDF, 'path="false"', 'path="true"'), {"tree"}),
+    (
+        "tool turned",
+        substituted(r'(tcp"(?s:.{0,99}?)rpy=")0 0 0', r"\g<1>0 0 1.5", URDF),
+        {"tcp"},
+    ),
+    ("twice the inertia", substituted(r'ixx="', 'ixx="1'), {"inertia"}),
+    ("inertia in g mm2", substituted(r"e-0(\d)\" i(?=[xyz])", r'e-03" i', count=0), {"inertia"}),
+    (
+        "inertia turned",
+        substituted(r'rpy="0 0 0"( />\s*<mass)', r'rpy="0 0 1"\1'),
+        {"inertia"},
+    ),
+    (
+        "inertia of the other axes",
+        substituted(r'iyy="(.*?)"(.*)izz=".*?"', r'iyy="\1"\2izz="\1"'),
+        {"inertia"},
+    ),
+    (
+        "seen elsewhere",
+        placed("visual", 'xyz="0 0 0.01"'),
+        {"seat", "closed", "open", "centre", "inertia", "reach"},
+    ),
+    ("touches elsewhere", placed("collision", 'xyz="0 0 0.01"'), {"reach"}),
+    ("touches turned", placed("collision", 'rpy="0 0 0.1"'), {"reach"}),
+    ("another macro", edited(MACROS, 'name="lumitip_emitter"', 'name="emitter"'), {"macros"}),
+    ("a macro's parameters", edited(MACROS, "prefix:=lumitip_", "prefix:=tip_"), {"macros"}),
+    ("xacro of another robot", edited(MACROS, 'name="lumitip"', 'name="other"'), {"macros"}),
     ("in mm/s", edited(URDF, 'velocity="0.15"', 'velocity="150"', 2), {"limits"}),
     ("from the middle", edited(URDF, 'lower="0"', 'lower="-0.01"'), {"limits"}),
     ("a macro's parent", edited(MACROS, 'link="${parent}"', 'link="world"'), {"macros"}),

@@ -1,4 +1,5 @@
-"""The URDF of both fingers: tree, places when closed and open, masses, and what touches."""
+"""The URDF of both fingers: tree, places when closed and open, masses, inertia, and what
+touches."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -27,6 +28,7 @@ _CHECKS = (
     "limits",
     "mass",
     "centre",
+    "inertia",
     "reach",
     "bulk",
 )
@@ -34,11 +36,17 @@ PLACE_MM = 0.02
 GAP_MM = 0.1  # the meshes are coarser than the parts, and a film's taper ends in one edge
 MASS = 0.01
 CENTRE_MM = 0.1
+INERTIA = 0.02  # of the largest moment
 REACH_MM = 0.02
-_FASTEST_MM_S = 500.0  # no electric gripper of the catalogue's size is faster
+_SPEED_MM_S = 150.0  # the largest of the Robotiq 2F-85's data sheet; the design has no speed
 BULK = 1.6  # volume of what touches, of what is seen
 _MOUNT = "fixed; parent ${{parent}}; child ${{prefix}}{0}; insert_block origin"
 """Joint of a macro: the user gives parent and place."""
+_PARAMETERS = "parent prefix:=lumitip_ meshes:=meshes *origin"
+_SETTINGS = {"strippath": "false", "discardvisual": "false"}
+"""Without these MuJoCo forgets folders and what is only looked at."""
+_FOLLOWS = {"lumitip_emitter_joint": ("lumitip_receiver_joint", 1.0, 0.0)}
+_ALONE = ("", 1.0, 0.0)
 _URDF = Subject("robot", _FILE)
 
 
@@ -68,10 +76,13 @@ def _misplaced(model: Model) -> list[str]:
     wrong = sorted(name for name in {*wanted, *found} if wanted.get(name) != found.get(name))
     bodies = {"lumitip_base", "lumitip_tcp", *(f"lumitip_{f}" for f in _FINGERS)}
     wrong += sorted(bodies ^ set(model.links))
-    emitter = model.joints.get("lumitip_emitter_joint")
-    if emitter and emitter.mimics != "lumitip_receiver_joint":
-        wrong.append("lumitip_emitter_joint mimics nothing")
-    return wrong
+    wrong += [
+        f"{name} mimics otherwise"
+        for name, joint in model.joints.items()
+        if joint.mimics != _FOLLOWS.get(name, _ALONE)
+    ]
+    wrong += ["robot's name"] if model.name != "lumitip" else []
+    return wrong + (["settings for MuJoCo"] if model.settings != _SETTINGS else [])
 
 
 def _places(model: Model, design: Design) -> Iterator[Measurement]:
@@ -82,11 +93,12 @@ def _places(model: Model, design: Design) -> Iterator[Measurement]:
     want = _about_x(-lean) @ turned @ _about_x(lean)
     off = np.abs(facing[:3, :3] - want[:3, :3]).max()
     yield _URDF.figure("facing", np.degrees(off), 0, 0.01, "°", "one finger's frame in the other's")
-    tcp = model.to_base("lumitip_tcp")[:3, 3]
+    tcp = model.to_base("lumitip_tcp")
     middle = (places[0][:3, 3] + places[1][:3, 3]) / 2
-    yield _URDF.figure(
-        "tcp", np.abs(tcp - middle).max(), 0, PLACE_MM, note="from between the cells"
-    )
+    off = np.abs(tcp[:3, 3] - middle).max()
+    yield _URDF.figure("tcp", off, 0, PLACE_MM, note="from between the cells")
+    off = np.degrees(np.abs(tcp[:3, :3] - np.eye(3)).max())
+    yield _URDF.figure("tcp", off, 0, 0.01, "°", "turned against the base")
     held = design.held
     lowest = [_bounds(model, f, 0.0, held)[0][2] for f in _FINGERS]
     worst = max(lowest, key=abs)
@@ -106,17 +118,18 @@ def _places(model: Model, design: Design) -> Iterator[Measurement]:
 
 
 def _limits(model: Model, design: Design) -> Iterator[Measurement]:
-    """Where the joints begin, how strong and how fast they are."""
-    wanted_n = design.strength.closing_n
+    """Where the joints begin and end, how strong and how fast they are."""
+    wanted_n, way_mm = design.strength.closing_n, design.closing.max_opening_mm / 2
     joints = {name: joint for name, joint in model.joints.items() if joint.kind == "prismatic"}
-    speed = min(joint.speed_mm_s for joint in joints.values())
     wrong = [
         name
         for name, joint in joints.items()
-        if (joint.lower_mm, joint.effort_n) != (0.0, wanted_n) or joint.speed_mm_s != speed
+        if (joint.lower_mm, joint.effort_n) != (0.0, wanted_n)
+        or not abs(joint.upper_mm - way_mm) < PLACE_MM
     ]
     yield _URDF.count("limits", wrong, "joints")
-    yield _URDF.figure("limits", speed, 1.0, _FASTEST_MM_S, "mm/s", "greatest speed of a finger")
+    speeds = [joint.speed_mm_s for joint in joints.values()]
+    yield _URDF.near("limits", speeds, _SPEED_MM_S, 0.01, "greatest speed of a finger", "mm/s")
 
 
 def _slid_mm(model: Model, finger: str) -> Vectors:
@@ -142,12 +155,18 @@ def _bounds(model: Model, finger: str, share: float, layer: str = "") -> Vectors
 
 
 def _body(link: Link, finger: Finger, design: Design) -> Iterator[Measurement]:
-    masses, centres = zip(*_pieces(link, finger, design), strict=True)
+    masses, centres, own = zip(*_pieces(link, finger, design), strict=True)
     mass, subject = sum(masses), f"{finger.name}"
     centre = np.average(centres, axis=0, weights=masses)
     yield _URDF.figure("mass", link.mass_g, mass * (1 - MASS), mass * (1 + MASS), "g", subject)
     off = float(np.abs(link.centre_mm - centre).max())
     yield _URDF.figure("centre", off, 0, CENTRE_MM, note=subject)
+    away = np.array(centres) - centre
+    wanted = sum(own) + sum(
+        m * (np.dot(r, r) * np.eye(3) - np.outer(r, r)) for m, r in zip(masses, away, strict=True)
+    )
+    off = float(np.abs(link.inertia_g_mm2 - wanted).max() / np.abs(wanted).max())
+    yield _URDF.figure("inertia", off, 0, INERTIA, "of the largest", subject)
     hulls = [mesh.convex_hull for mesh in link.collisions.values()]
     seen = np.concatenate([mesh.vertices for mesh in link.visuals.values()])
     outside = np.min([_outside(hull, seen) for hull in hulls], axis=0).max() if hulls else np.inf
@@ -157,21 +176,23 @@ def _body(link: Link, finger: Finger, design: Design) -> Iterator[Measurement]:
     yield _URDF.figure("bulk", bulk, 0, BULK, "times what is seen", subject)
 
 
-def _pieces(link: Link, finger: Finger, design: Design) -> Iterator[tuple[float, Vectors]]:
-    """Mass (g) and centre of each layer, by the volume of its mesh, and of each part."""
+def _pieces(link: Link, finger: Finger, design: Design) -> Iterator[tuple[float, Vectors, Vectors]]:
+    """Mass (g), centre, and inertia about it (g mm2) of each layer, by its mesh, and each part."""
     densities = design.densities
     for kind in design.layers:
         mesh = link.visuals[f"{finger.name}_{kind}"]
-        yield mesh.volume * getattr(densities, f"{kind}_g_ml") / 1000, mesh.center_mass
+        g_mm3 = getattr(densities, f"{kind}_g_ml") / 1000
+        yield mesh.volume * g_mm3, mesh.center_mass, mesh.moment_inertia * g_mm3
     for part in finger.parts:
         front = part.side == "front"
         density = densities.part_g_ml - front * densities.silicone_g_ml
-        volume = part.size_x_mm * part.size_y_mm * part.height_mm
-        stack = design.stack
+        size = np.array([part.size_x_mm, part.size_y_mm, part.height_mm])
+        grams, stack = size.prod() * density / 1000, design.stack
         z_mm = (
             stack.rim_z_mm if front else stack.pocket_z_mm - part.height_mm
         ) + part.height_mm / 2
-        yield volume * density / 1000, np.array([part.x_mm, part.y_mm, z_mm])
+        inertia = grams / 12 * np.diag((size**2).sum() - size**2)
+        yield grams, np.array([part.x_mm, part.y_mm, z_mm]), inertia
 
 
 def _outside(hull: Any, points_mm: Vectors) -> Vectors:
@@ -192,6 +213,7 @@ def _macros(outputs: Path) -> Measurement:
         if f"lumitip_{f}" in model.links
     }
     wanted |= {f"lumitip_{f}_mount": _MOUNT.format(f) for f in _FINGERS}
+    wanted |= {"robot": "lumitip"} | {f"macro lumitip_{f}": _PARAMETERS for f in _FINGERS}
     apart = sorted(name for name in {*wanted, *macros} if wanted.get(name) != macros.get(name))
     return count("robot.macros", _MACROS, apart, "links and joints unlike the URDF's")
 

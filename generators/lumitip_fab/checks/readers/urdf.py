@@ -12,6 +12,7 @@ from lumitip_fab.checks.readers.solids import Vectors, read_mesh
 from lumitip_fab.errors import OutputError
 
 M_TO_MM = 1000.0
+_MACRO = "{http://www.ros.org/wiki/xacro}macro"
 _LIMITS = ("lower", "upper", "effort", "velocity")
 
 
@@ -22,6 +23,8 @@ class Link:
     name: str
     mass_g: float
     centre_mm: Vectors
+    inertia_g_mm2: Vectors
+    """About the centre of mass, in the link's axes, shape `(3, 3)`."""
     visuals: dict[str, Any]
     collisions: dict[str, Any]
     text: str
@@ -42,13 +45,17 @@ class Joint:
     upper_mm: float
     effort_n: float
     speed_mm_s: float
-    mimics: str
+    mimics: tuple[str, float, float]
+    """The joint that it follows, or none (`""`); how many times as far, and from where (m)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Model:
     """All of a file, by name."""
 
+    name: str
+    settings: dict[str, str]
+    """What MuJoCo is told of the file."""
     links: dict[str, Link]
     joints: dict[str, Joint]
 
@@ -70,16 +77,17 @@ def read_urdf(path: Path) -> Model:
         root = ElementTree.fromstring(path.read_bytes())
         links = [_link(e, path.parent) for e in root.findall("link")]
         joints = {e.get("name", ""): _joint(e) for e in root.findall("joint")}
+        settings = {k: v for e in root.findall("mujoco/compiler") for k, v in e.items()}
     except OSError as error:
         raise OutputError(f"cannot be read: {error.strerror}") from error
     except (ElementTree.ParseError, ValueError, KeyError, AttributeError) as error:
         raise OutputError(f"is no URDF: {error!r:.200}") from error
-    return Model({link.name: link for link in links}, joints)
+    return Model(root.get("name", ""), settings, {link.name: link for link in links}, joints)
 
 
 def read_macros(path: Path) -> dict[str, str]:
-    """The link and the joint of each macro of a xacro file, by name: links in the form of
-    `Link.text`, joints as their type and what is in them, one after the other.
+    """Robot, macros, links and joints of a xacro file, by name: macros by their parameters, links
+    in the form of `Link.text`, joints as their type and what is in them, one after the other.
 
     Raises:
         OutputError: if the file cannot be read.
@@ -88,7 +96,9 @@ def read_macros(path: Path) -> dict[str, str]:
         root = ElementTree.fromstring(path.read_bytes())
     except (OSError, ElementTree.ParseError) as error:
         raise OutputError(f"cannot be read: {error}") from error
-    found = {str(e.get("name")): _text(e) for e in root.findall(".//link")}
+    found = {"robot": str(root.get("name"))}
+    found |= {f"macro {e.get('name')}": str(e.get("params")) for e in root.findall(_MACRO)}
+    found |= {str(e.get("name")): _text(e) for e in root.findall(".//link")}
     found |= {str(e.get("name")): _inside(e) for e in root.findall(".//joint")}
     return {name.replace("${prefix}", "lumitip_"): text for name, text in found.items()}
 
@@ -107,10 +117,21 @@ def _link(element: Element, folder: Path) -> Link:
         name=element.attrib["name"],
         mass_g=M_TO_MM * float(_attribute(inertial, "mass", "value")) if weighed else 0.0,
         centre_mm=M_TO_MM * _three(_attribute(inertial, "origin", "xyz") if weighed else "0 0 0"),
+        inertia_g_mm2=_inertia(inertial) if weighed else np.zeros((3, 3)),
         visuals=dict(_meshes(element, "visual", folder)),
         collisions=dict(_meshes(element, "collision", folder)),
         text=_text(element),
     )
+
+
+def _inertia(inertial: Element | None) -> Vectors:
+    """The tensor, turned from the axes of the `<inertial>` to those of the link."""
+    tensor = np.zeros((3, 3))
+    for i, j in zip(*np.triu_indices(3), strict=True):
+        value = _attribute(inertial, "inertia", f"i{'xyz'[i]}{'xyz'[j]}")
+        tensor[i, j] = tensor[j, i] = float(value) * M_TO_MM**3
+    turn = _turn(*_three(_attribute(inertial, "origin", "rpy")))
+    return np.asarray(turn @ tensor @ turn.T)
 
 
 def _meshes(element: Element, kind: str, folder: Path) -> Any:
@@ -123,16 +144,21 @@ def _meshes(element: Element, kind: str, folder: Path) -> Any:
             mesh = read_mesh(folder / name)
         except OutputError as error:
             raise OutputError(f"{name}: {error}") from error
-        yield (
-            str(body.get("name")),
-            mesh.apply_scale(_three(mesh_element.attrib["scale"]) * M_TO_MM),
-        )
+        mesh.apply_scale(_three(mesh_element.attrib["scale"]) * M_TO_MM)
+        own = body.find("origin")
+        yield str(body.get("name")), mesh if own is None else mesh.apply_transform(_place(own))
+
+
+def _place(origin: Element) -> Vectors:
+    """From the frame that an `<origin>` gives to the one around it, 4x4, mm."""
+    place = np.eye(4)
+    place[:3, :3] = _turn(*_three(origin.get("rpy", "0 0 0")))
+    place[:3, 3] = M_TO_MM * _three(origin.get("xyz", "0 0 0"))
+    return place
 
 
 def _joint(element: Element) -> Joint:
-    place = np.eye(4)
-    place[:3, :3] = _turn(*_three(_attribute(element, "origin", "rpy")))
-    place[:3, 3] = M_TO_MM * _three(_attribute(element, "origin", "xyz"))
+    origin = element.find("origin")
     slides = element.get("type") == "prismatic"
     limits = {n: float(_attribute(element, "limit", n)) if slides else 0.0 for n in _LIMITS}
     mimic = element.find("mimic")
@@ -140,14 +166,19 @@ def _joint(element: Element) -> Joint:
         kind=element.attrib["type"],
         parent=_attribute(element, "parent", "link"),
         child=_attribute(element, "child", "link"),
-        place=place,
+        place=np.eye(4) if origin is None else _place(origin),
         axis=_three(_attribute(element, "axis", "xyz") if slides else "0 0 0"),
         lower_mm=M_TO_MM * limits["lower"],
         upper_mm=M_TO_MM * limits["upper"],
         effort_n=limits["effort"],
         speed_mm_s=M_TO_MM * limits["velocity"],
-        mimics="" if mimic is None else mimic.attrib["joint"],
+        mimics=("", 1.0, 0.0) if mimic is None else _mimicry(mimic),
     )
+
+
+def _mimicry(mimic: Element) -> tuple[str, float, float]:
+    multiplier, offset = mimic.get("multiplier", "1"), mimic.get("offset", "0")
+    return mimic.attrib["joint"], float(multiplier), float(offset)
 
 
 def _turn(roll: float, pitch: float, yaw: float) -> Vectors:
