@@ -73,6 +73,14 @@ def test_the_command_ends(
     assert main(["check", "--out", str(damaged)]) in (1, 2)
 
 
+def test_a_pipe_more_is_seen_whatever_is_remembered(damaged: Path, tmp_path: Path) -> None:
+    path = tmp_path / "memory.json"
+    assert not run_checks(damaged, ["manifest"], Memory(path, damaged)).failed
+    os.mkfifo(damaged / "firmware/more.h")
+    outcome = run_checks(damaged, ["manifest"], Memory(path, damaged))
+    assert {m.check for m in outcome.failed} == {"manifest.kinds", "manifest.strays"}
+
+
 def test_lists_in_lists(damaged: Path, tmp_path: Path) -> None:
     (damaged / "manifest.json").write_text(NESTED)
     (tmp_path / "memory.json").write_text(NESTED)

@@ -19,7 +19,7 @@ from typing import Any
 from lumitip_fab.checks.result import Measurement, count
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import read_design
-from lumitip_fab.paths import read_plain
+from lumitip_fab.paths import read_plain, resolved
 from lumitip_fab.pipeline.dependencies import Dependencies, FieldHashes, RecordedDesign
 from lumitip_fab.pipeline.fingerprint import PACKAGE, installed_hash, whole_code_hash
 from lumitip_fab.pipeline.manifest import no_files, sha256_of, write_file
@@ -111,8 +111,8 @@ class Memory:
         self._path = path
         self._known = _read(path)
         self._hashes: FieldHashes | None = None
-        own = {f.resolve() for f in (path, *reports)}
-        files = (f for f in sorted(out.rglob("*")) if f.is_file() and f.resolve() not in own)
+        own = {resolved(f) for f in (path, *reports)}
+        files = (f for f in sorted(out.rglob("*")) if not f.is_dir() and resolved(f) not in own)
         self._sha256 = {f.relative_to(out).as_posix(): str(sha256_of(f)) for f in files}
 
     def recalled(self, module: str, design: Design) -> tuple[Measurement, ...] | None:
