@@ -96,6 +96,16 @@ COPPER_DAMAGES: dict[str, tuple[str, Change, set[str]]] = {
         replaced("Plated,1,2,PTH", "NonPlated,1,2,NPTH"),
         {"roles"},
     ),
+    "repeated ten times": (
+        "F_Cu.gbr",
+        replaced("%LPD*%", "%LPD*%\n%SRX1Y10I0J30*%"),
+        {"readable"},
+    ),
+    "no origin": (
+        "B_Silkscreen.gbr",
+        replaced("%TF.SameCoordinates,Sensor*%\n", ""),
+        {"roles"},
+    ),
     "repeated": ("F_Cu.gbr", replaced("%LPD*%", "%LPD*%\n%SRX2Y1I50J0*%"), {"readable"}),
 }
 """File, damage, and the checks that fail."""

@@ -2,6 +2,7 @@
 
 import csv
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -130,3 +131,14 @@ def test_a_users_own_prices_replace_those_of_the_package(design_dir: Path, tmp_p
     assert after.unit_price(after.silicone) is None
     assert before.unit_price(before.silicone) == 54.0 / 900.0
     assert {p.part: p.each for p in before.parts}["15406085BA300"] == 0.3
+
+
+def test_lists_without_makers_still_count_parts(copied: Path) -> None:
+    design = read_design(copied / "design.json")
+    only = [fab for fab in design.fabs if "manufacturer" not in {field for _, field in fab.bom}]
+    assert only
+    found = measure(copied, replace(design, fabs=tuple(only)))
+    assert "bom.parts" in {m.check for m in found if m.passed}
+    edit(copied / "bom.csv", "32 on emitter,32,piece", "31 on emitter,31,piece")
+    found = measure(copied, replace(design, fabs=tuple(only)))
+    assert "bom.parts" in {m.check for m in found if not m.passed}

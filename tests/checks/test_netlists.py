@@ -14,6 +14,7 @@ EDITS = {
     "LEDs swapped": (EMITTER, "D5 S1_0 S1_1", "D4 S1_0 S1_1", {"nets"}),
     "resistor changed": (EMITTER, "R1 24V S1_0 150", "R1 24V S1_0 180", {"values"}),
     "resistor in kilohm": (EMITTER, "R1 24V S1_0 150", "R1 24V S1_0 150k", {"values"}),
+    "resistor shorted": (EMITTER, "R1 24V S1_0 150", "R1 24V 24V 150", {"loose", "nets"}),
     "model gone": (EMITTER, ".model led", ".model diode", {"loose"}),
     "unknown figure": (EMITTER, "print i_ma", "print i_mean", {"loose"}),
     "nothing printed": (FLANGE, "print ", "echo ", {"loose"}),

@@ -97,6 +97,11 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
         svg('id="silkscreen" (.*?) d="M', r'id="silkscreen" \1 d="C'),
         {"readable"},
     ),
+    "silkscreen twice": (
+        svg("<title>", '<path id="silkscreen" fill="#f3f2ea" fill-rule="evenodd" d=""/><title>'),
+        {"readable"},
+    ),
+    "colour that is not opaque": (svg('fill="#191b1d"', 'fill="#191b1d80"'), {"readable"}),
     "SVG cut short": (lambda folder: cut_short(folder / f"{FRONT}.svg", 40_000), {"readable"}),
     "SVG gone": (lambda folder: (folder / f"{FRONT}.svg").unlink(), {"readable"}),
     "PNG mirrored": (png(lambda p: p.transpose(PIL.Image.Transpose.FLIP_LEFT_RIGHT)), {"colours"}),
@@ -106,6 +111,8 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
     ),
     "PNG painted over": (png(painted), {"colours"}),
     "PNG with noise": (png(noise), {"colours", "edges"}),
+    "PNG of a pixel": (png(lambda p: p.resize((1, 1))), {"readable"}),
+    "PNG squeezed": (png(lambda p: p.resize((p.width // 2, p.height))), {"readable"}),
     "PNG cut short": (lambda folder: cut_short(folder / f"{FRONT}.png", 9000), {"readable"}),
     "PNG gone": (lambda folder: (folder / f"{FRONT}.png").unlink(), {"readable"}),
     "PNG of the other side": (other_side, {"colours"}),
@@ -129,6 +136,14 @@ def test_a_damage_is_found(case: str, copied: Path) -> None:
 def failed(folder: Path) -> list[Measurement]:
     design = read_design(folder / "design.json")
     return [m for m in pictures.measure(folder, design) if not m.passed]
+
+
+def test_a_board_without_a_closed_edge_is_named(copied: Path) -> None:
+    path = copied / "boards/receiver/receiver.kicad_pcb"
+    path.write_text(path.read_text().replace('"Edge.Cuts"', '"Dwgs.User"'))
+    assert [(m.check, m.subject) for m in failed(copied)] == [
+        ("pictures.readable", "boards/receiver")
+    ]
 
 
 def test_a_board_that_cannot_be_read_is_named(copied: Path) -> None:

@@ -10,11 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
+from lumitip_fab.checks.bom_numbers import measure_numbers
 from lumitip_fab.checks.cables import read_list
 from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.readers.vertices import corners_mm
 from lumitip_fab.checks.result import Measurement, count, unreadable
-from lumitip_fab.design import Design, Fab
+from lumitip_fab.design import Design
 from lumitip_fab.design.mould import printed_times
 from lumitip_fab.errors import OutputError
 
@@ -35,8 +36,6 @@ READS = (
 _FILE = "bom.csv"
 _PART_G = re.compile(r"^\| .*, part [AB] \| \*\*([\d.]+) g\*\* \|$", re.MULTILINE)
 _CENT = 0.0051
-_NUMBERED = 95.0
-"""Percent of the boards' lines with a manufacturer and its order number, at least."""
 _FRACTION = 0.01
 _LENGTH = re.compile(r"M[\d.]+ x ([\d.]+) socket head screw$")
 _THREADS = (1.5, 2.5)  # of a bolt in the gripper, its length an even one
@@ -79,42 +78,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield from _bolts(rows, design)
     yield count("bom.prices", _FILE, _wrong_prices(rows, design), "wrong lines")
     yield _sum(rows, total, note, design)
-    yield from _numbered(outputs, design)
-
-
-def _numbered(outputs: Path, design: Design) -> Iterator[Measurement]:
-    """Share of the boards' lines with a manufacturer and its number, and with LCSC's number, in
-    the written lists for the first PCB fab that asks for each. A part that LCSC does not sell is
-    reported, and does not fail."""
-    for check, fields, least in (
-        ("bom.numbered", ("manufacturer", "part"), _NUMBERED),
-        ("bom.lcsc", ("part", "lcsc"), -math.inf),
-    ):
-        fab = next((f for f in design.fabs if {*fields} <= {field for _, field in f.bom}), None)
-        if fab is None:
-            continue
-        paths = [f"boards/{n}/order/{fab.name}_{n}_bom.csv" for n in _boards(design)]
-        try:
-            lines = [line for path in paths for line in _fields(outputs / path, fab, fields)]
-        except OutputError as error:
-            yield unreadable(check, _FILE, str(error))
-            continue
-        known = [line for line in lines if all(text not in ("", "any") for text in line.values())]
-        without = sorted({line["part"] or "a line" for line in lines if line not in known})
-        note = f"{len(known)} of {len(lines)} lines of the boards"
-        note += f"; not {', '.join(without[:4])}" if without else ""
-        share = 100 * len(known) / len(lines) if lines else 100.0
-        yield Measurement(check, "boards/*/order", share, least, math.inf, "%", note)
-
-
-def _fields(path: Path, fab: Fab, fields: tuple[str, ...]) -> list[dict[str, str]]:
-    """Some fields of each line of a list for a PCB fab."""
-    heading = {field: head for head, field in fab.bom}
-    try:
-        rows = table(path.read_text(encoding="utf-8"))
-        return [{field: row[heading[field]].strip() for field in fields} for row in rows]
-    except (OSError, ValueError, KeyError) as error:
-        raise OutputError(f"{path}: cannot be read: {error!r:.120}") from error
+    yield from measure_numbers(outputs, design)
 
 
 def _bolts(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
@@ -176,16 +140,24 @@ Part = tuple[str, str]
 
 
 def _parts(outputs: Path, design: Design) -> Counter[Part]:
-    """Quantity of each part, from the list for a PCB fab that includes all three."""
+    """Quantity of each part, from the list for a PCB fab that includes all three; without makers
+    where no list has them.
+
+    Raises:
+        OutputError: if no list has part and quantity, or one cannot be read.
+    """
     needed = {"manufacturer", "part", "quantity"}
-    fab = next(fab for fab in design.fabs if needed <= {field for _, field in fab.bom})
+    fabs = [fab for fab in design.fabs if {"part", "quantity"} <= {f for _, f in fab.bom}]
+    fab = max(fabs, key=lambda each: len(needed & {f for _, f in each.bom}), default=None)
+    if fab is None:
+        raise OutputError("no PCB fab's list has order numbers and quantities")
     heading = {field: head for head, field in fab.bom}
     found: Counter[Part] = Counter()
     for name in _boards(design):
         path = outputs / f"boards/{name}/order/{fab.name}_{name}_bom.csv"
         try:
             for row in table(path.read_text(encoding="utf-8")):
-                part = row[heading["manufacturer"]], row[heading["part"]]
+                part = row.get(heading.get("manufacturer", ""), ""), row[heading["part"]]
                 found[part] += int(row[heading["quantity"]])
         except (OSError, ValueError, KeyError) as error:
             raise OutputError(f"{path}: cannot be read: {error!r:.120}") from error
@@ -222,12 +194,21 @@ def _wrong_parts(rows: tuple[Row, ...], parts: Counter[Part], design: Design) ->
         if row.group == "electronics":
             counts[row.maker, row.part] += round(row.quantity)
     soldered = any(d.kind == "module" for c in design.auxiliary_boards for d in c.components)
+    if not any(maker for maker, _ in parts):
+        counts = _without_makers(counts)
     wanted = parts + Counter({} if soldered else {("", design.controller.title): 1})
     return [
         f"{' '.join(part)}: {counts[part]}, not {wanted[part]}"
         for part in sorted({*counts, *wanted})
         if counts[part] != wanted[part]
     ]
+
+
+def _without_makers(counts: Counter[Part]) -> Counter[Part]:
+    found: Counter[Part] = Counter()
+    for (_, part), number in counts.items():
+        found["", part] += number
+    return found
 
 
 def _prints(rows: tuple[Row, ...], grams: dict[str, float]) -> Measurement:

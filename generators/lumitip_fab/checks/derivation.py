@@ -11,8 +11,8 @@ from typing import Any
 
 from lumitip_fab.checks.result import Measurement, Subject, unreadable
 from lumitip_fab.config.load import load
-from lumitip_fab.config.resolved import resolved_text
 from lumitip_fab.derive import derive
+from lumitip_fab.derive.resolved import resolved_text
 from lumitip_fab.design import Choice, Design
 from lumitip_fab.design.encoding import encoded
 from lumitip_fab.errors import FabError
@@ -43,7 +43,9 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield of.count("choices", odd, "automatic values are not in resolved.toml")
     lines, wanted = Counter(text.splitlines()), Counter(resolved_text(config).splitlines())
     changed = sorted(((lines - wanted) + (wanted - lines)).elements())
-    yield Subject("derivation", _PARAMETERS).count("values", changed, "lines are not of its design")
+    yield Subject("derivation", _PARAMETERS).count(
+        "values", changed, "lines differ from the design derived again"
+    )
 
 
 def _differing(one: Any, other: Any, place: str) -> Iterator[str]:

@@ -34,7 +34,7 @@ def measure(outputs: Path, _design: Design) -> Iterator[Measurement]:
             continue
         parts = {part.ref: part for part in board.parts}
         yield of.count("loose", list(_loose(found)), "nodes, models or figures lead nowhere")
-        yield of.count("nets", list(_elsewhere(found, parts)), "parts are at other nets")
+        yield of.count("nets", list(_elsewhere(found, parts)), "parts on other nets")
         yield of.count("values", list(_other_values(found, parts)), "resistors have other values")
 
 
@@ -65,13 +65,15 @@ def _elsewhere(found: Netlist, parts: Mapping[str, Part]) -> Iterator[str]:
     for element, part in _modelled(found, parts):
         own = {terminal.net for terminal in part.terminals}
         nodes = {_GROUND if node == "0" else node for node in element.nodes}
-        if not nodes & nets <= own:
-            yield f"{element.name} at {', '.join(sorted((nodes & nets) - own))}"
+        whole = element.name == part.ref and len(part.terminals) == 2 and nodes <= nets
+        if not nodes & nets <= own or (whole and nodes != own):
+            yield f"{element.name} at {', '.join(sorted(nodes & nets))}"
 
 
 def _other_values(found: Netlist, parts: Mapping[str, Part]) -> Iterator[str]:
     for element, part in _modelled(found, parts):
         if element.name == part.ref and element.name[0] == "R":
             value = element.value
-            if value is None or not abs(value / ohm(part.value) - 1) <= _RESISTANCE:
+            wanted = ohm(part.value)
+            if value is None or not abs(value - wanted) <= _RESISTANCE * wanted:
                 yield f"{element.name} {' '.join(element.rest[:1])}, not {part.value}"

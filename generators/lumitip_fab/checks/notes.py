@@ -10,6 +10,8 @@ from pathlib import Path
 from lumitip_fab.checks.readers.manual import Html, read_note
 from lumitip_fab.errors import OutputError
 
+_FOLDERS = ("mask", "mould", "print", "wiring")
+"""Of the notes that the manual includes."""
 _ITEM = re.compile(r"^\d+\.(?!\d)")
 _NUMBER = re.compile(r"\d+(\.\d+)?")
 _FINGERS = re.compile("emitter|receiver")
@@ -22,7 +24,7 @@ def lines_misplaced(outputs: Path, page: Html) -> Iterator[str]:
     line that stands in no other document is not judged.
     """
     shown = _forms(page.lines)
-    for path in sorted(outputs.glob("*/*.md")):
+    for path in sorted(path for name in _FOLDERS for path in (outputs / name).glob("*.md")):
         lines, beside = _note(path), path.with_name(_exchanged(path.name))
         twin = [_exchanged(line) for line in _note(beside)] if beside != path else []
         yield from (f"{path.name}: {line:.40} too often" for line in _doubled(lines, shown, twin))
@@ -53,7 +55,7 @@ def _forms(lines: Sequence[str]) -> list[str]:
 def _doubled(lines: list[str], shown: list[str], twin: list[str]) -> Iterator[str]:
     in_manual, in_twin = Counter(shown), Counter(twin)
     for line, number in Counter(lines).items():
-        if number > max(in_manual[line], in_twin[line], 1):
+        if number > max(in_manual[line], in_twin[line]) > 0:
             yield line
 
 

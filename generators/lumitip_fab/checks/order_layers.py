@@ -19,7 +19,7 @@ from lumitip_fab.design import Box
 PLACE_MM = 0.001
 MASK_GAP_MM = 0.1  # an opening round a pad, each side, at most
 INK_SHARE = 0.03  # of the room of a word, at least
-_CHORD_MM = 0.01  # of arcs, off their chords
+_CHORD_MM = 0.01  # of arcs, off their chords: what differs by less than twice this is not seen
 _ROUND_MM2 = 0.01  # what chords of round pens leave of all lines of a side
 _SIDES = ("front", "back")
 Holes = list[tuple[float, float, float]]

@@ -40,7 +40,7 @@ def _wrong(layers: Mapping[str, bytes]) -> Iterator[str]:
             yield f"{key} is {', '.join(functions) or 'nothing'}"
         if key in _DRILLS:
             continue
-        if places[key] != wanted:
+        if not wanted or places[key] != wanted:
             yield f"{key} lies elsewhere"
         polarity = [value for name, value in found[key] if name == "FilePolarity"]
         own = [] if key == "outline" else ["Negative" if key.endswith("mask") else "Positive"]

@@ -64,9 +64,10 @@ def measure_tables(path: str, read: ReadBoard, fab: Fab, files: Files) -> Iterat
 def _other_texts(read: ReadBoard, row: dict[str, str], refs: list[str]) -> Iterator[str]:
     """What a row has of its parts, and the board's file has not."""
     for part in (read.parts[ref] for ref in refs if ref in read.parts):
-        own = {"value": {part.value}, "footprint": {part.footprint}, "manufacturer": {*part.texts}}
-        for field in own.keys() & row.keys():
-            if row[field] not in own[field]:
+        maker = dict(part.fields).get("Manufacturer", "")
+        own = {"value": part.value, "footprint": part.footprint, "manufacturer": maker}
+        for field in sorted(own.keys() & row.keys()):
+            if row[field] != own[field]:
                 yield f"{part.ref}: {field} {row[field]:.20}"
 
 

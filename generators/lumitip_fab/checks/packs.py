@@ -42,7 +42,10 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     note = "of all quantities of the bill"
     yield Measurement("packs.needed", _FILE, needed, used - 0.1, used + 0.1, "units", note)
     yield count(
-        "packs.lines", _FILE, list(_strange(orders, bill, design.purchase)), "not as the bill"
+        "packs.lines",
+        _FILE,
+        list(_strange(orders, bill, design.purchase)),
+        "lines that differ from the bill",
     )
     wrong = [order.item for order in orders if not _enough(order, design.purchase)]
     yield count("packs.enough", _FILE, wrong, "wrong numbers or prices of packs")
@@ -60,10 +63,12 @@ def _strange(orders: list[Row], bill: list[dict[str, str]], purchase: Purchase) 
     products |= {f"{pack.manufacturer} {pack.product}" for pack in purchase.packs}
     yield from (o.item for o in orders if o.item not in items or o.product not in products)
     names = {name for order in orders for name in (order.item, order.product)}
+    titles = {pack.name: pack.title for pack in purchase.packs}
     shared = {pack.name: f"{pack.manufacturer} {pack.product}" for pack in purchase.packs}
     for row in bill:
         product = f"{row['manufacturer']} {row['part']}"
-        if names.isdisjoint({row["item"], product, shared.get(row["part"], "")} - {" "}):
+        others = {shared.get(row["part"], ""), titles.get(row["part"], "")}
+        if names.isdisjoint({row["item"], product, *others} - {" "}):
             yield row["item"]
 
 

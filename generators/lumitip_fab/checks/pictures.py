@@ -36,6 +36,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     for name in names_of(design):
         try:
             read = read_any(outputs, design, name)
+            if read.outline.is_empty:
+                raise OutputError("the board has no closed edge")
         except OutputError as error:
             yield unreadable("pictures.readable", f"boards/{name}", str(error))
             continue

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from lumitip_fab.catalogue import Catalogue
 from lumitip_fab.config.load import Input
-from lumitip_fab.config.resolved import resolved_text
+from lumitip_fab.derive.resolved import resolved_text
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import design_text
 from lumitip_fab.paths import design_folder, packaged_design, parts_file

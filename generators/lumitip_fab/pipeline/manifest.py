@@ -132,10 +132,13 @@ def _usable(path: str, entry: Entry) -> bool:
 
 
 def no_files(out: Path) -> list[str]:
-    """Paths in an output folder that nobody can read to an end: pipes, devices and links to them,
-    and folders in the place of a file that the manifest lists."""
+    """Paths in an output folder that are no plain files: pipes, devices and links to them, and
+    folders in the place of a file that the manifest lists. Hidden folders are not looked into."""
     listed = {NAME, *read(out).files}
-    there = {path.relative_to(out).as_posix() for path in out.rglob("*")}
+    there = set()
+    for top, folders, names in os.walk(out):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        there |= {(Path(top) / name).relative_to(out).as_posix() for name in names}
     return sorted(p for p in there | listed if _no_file(out / p, p in listed))
 
 

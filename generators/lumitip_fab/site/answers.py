@@ -71,8 +71,9 @@ def _quality(folder: Folder, checks: Sequence[dict[str, Any]], errors: Mapping[s
         for kind in ("edge", "cable")
         if f"{kind}_mm" in errors
     )
+    simulated = f"Expected errors, simulated: {poses}. " if poses else ""
     more = (
-        f"Expected errors, simulated: {poses}. No finger was measured. Rated force: "
+        f"{simulated}No finger was measured. Rated force: "
         f'{escape(folder.design.strength.rating)}. <a href="#checks">Checks</a>'
     )
     if not checks:

@@ -195,7 +195,7 @@ class Viewer {
   // The body itself leaves its mark in the stencil, and its ghost is drawn elsewhere alone.
   paint(body, colour, shine, stencilRef = 1) {
     const { material, userData } = body;
-    material.color.set(colour).multiplyScalar(1);
+    material.color.set(colour);
     material.emissive.set(colour).multiplyScalar(0.08);
     Object.assign(material, {
       opacity: Math.max(userData.opacity, 0.6), transparent: true, // drawn after what is clear

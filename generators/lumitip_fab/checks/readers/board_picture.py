@@ -21,7 +21,7 @@ _SVG = "{http://www.w3.org/2000/svg}"
 _FORM = {f"{_SVG}svg": 3, f"{_SVG}title": 0, f"{_SVG}path": 4}
 """Elements, and how many attributes each has: nothing turns, hides or covers an area."""
 _RING = re.compile(r"M([-\d. eL]+)Z")
-_UNITS = ("mm", "mm")
+_STRETCHED = 0.01  # one way more than the other, at most: sizes are whole pixels
 Places = NDArray[np.float64]
 Names = NDArray[np.str_]
 
@@ -67,17 +67,27 @@ def read_drawing(path: Path) -> BoardDrawing:
         sides = root.attrib["width"], root.attrib["height"]
         if sides != (f"{width:g}mm", f"{height:g}mm"):
             raise ValueError(f"it is {' x '.join(sides)}, not {width:g} x {height:g} mm")
-        areas = {each.attrib["id"]: each.attrib for each in root.iter(f"{_SVG}path")}
+        paths = [each.attrib for each in root.iter(f"{_SVG}path")]
+        areas = {each["id"]: each for each in paths}
+        if len(areas) < len(paths) or min(width, height) <= 0:
+            raise ValueError("it has an area twice, or no size")
         if any(area["fill-rule"] != "evenodd" for area in areas.values()):
             raise ValueError("it has an area that is filled otherwise")
         return BoardDrawing(
             (width, height),
             (left + width / 2, top + height / 2),
-            {name: ImageColor.getrgb(area["fill"]) for name, area in areas.items()},
+            {name: _colour(area["fill"]) for name, area in areas.items()},
             {name: _rings(area["d"]) for name, area in areas.items()},
         )
     except (OSError, XmlTree.ParseError, *MALFORMED) as error:
         raise OutputError(f"cannot be read: {error!s:.120}") from error
+
+
+def _colour(fill: str) -> tuple[int, ...]:
+    rgb = ImageColor.getrgb(fill)
+    if len(rgb) != 3:
+        raise ValueError("an area is not opaque")
+    return rgb
 
 
 def _rings(path: str) -> list[shapely.Polygon]:
@@ -96,8 +106,11 @@ def png_names(path: Path, drawing: BoardDrawing, at_mm: Places) -> Names:
     """
     try:
         with PIL.Image.open(path) as shown:
+            per_mm = np.array(shown.size) / drawing.size_mm
+            if min(shown.size) < 3 or abs(per_mm[0] / per_mm[1] - 1) > _STRETCHED:
+                raise ValueError(f"{shown.size[0]} x {shown.size[1]} pixels are not its shape")
             seen = np.asarray(shown.convert("RGBA"), dtype=np.int16)
-    except (OSError, SyntaxError, *MALFORMED) as error:
+    except (OSError, SyntaxError, PIL.Image.DecompressionBombError, *MALFORMED) as error:
         raise OutputError(f"cannot be read: {error!s:.120}") from error
     size = np.array(seen.shape[1::-1])
     column, row = np.floor(at_mm * size / drawing.size_mm + size / 2).astype(int).T

@@ -18,7 +18,7 @@ from shapely.geometry.base import BaseGeometry
 
 Hole = tuple[float, float, float]
 """x, y, diameter (mm)."""
-_REPEATED = re.compile(r"%SR(?!\*|X1Y1)")
+_REPEATED = re.compile(r"[%*]SR(?!\*|X1Y1(?!\d))")
 _STEPS = 32  # chords of a quarter circle
 
 

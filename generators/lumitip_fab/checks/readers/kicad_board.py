@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from shapely.errors import ShapelyError
 from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks.readers import kicad_shapes as shapes
@@ -133,7 +134,7 @@ def read_board(path: Path) -> KicadBoard:
     text = read_text(path)
     try:
         return _board(text)
-    except ValueError as error:
+    except (ValueError, ShapelyError) as error:
         raise OutputError(f"{path}: {error}") from error
 
 
