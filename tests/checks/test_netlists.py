@@ -41,19 +41,19 @@ def test_a_damage_fails_its_check(case: str, copied: Path) -> None:
     text = (copied / path).read_text()
     assert old in text
     (copied / path).write_text(text.replace(old, new))
-    assert failing(copied, "netlists") == expected
+    assert failing(copied, "netlists", path.split("/")[1]) == expected
 
 
 def test_a_netlist_that_is_cut_short_or_binary_is_not_read(copied: Path) -> None:
     cut_short(copied / EMITTER, 300)
-    assert failing(copied, "netlists") == {"readable"}
+    assert failing(copied, "netlists", "emitter") == {"readable"}
     (copied / EMITTER).write_bytes(b"\xff" * 100)
-    assert failing(copied, "netlists") == {"readable"}
+    assert failing(copied, "netlists", "emitter") == {"readable"}
 
 
 def test_a_board_that_changed_alone_is_found(copied: Path) -> None:
     edit(copied / "boards/emitter/emitter.kicad_pcb", '"150R"', '"180R"')
-    assert failing(copied, "netlists") == {"values"}
+    assert failing(copied, "netlists", "emitter") == {"values"}
 
 
 @pytest.mark.parametrize(

@@ -19,17 +19,10 @@ Damage = Callable[[Path], None]
 
 @pytest.fixture
 def copied(outputs: Path, tmp_path: Path) -> Path:
-    """All boards and their pictures, to damage."""
-    names = (path.name for path in (outputs / "boards").iterdir() if path.name != "models")
-    return excerpt(
-        outputs,
-        tmp_path / "pictures",
-        *(
-            f"boards/{name}/{name}{end}"
-            for name in names
-            for end in (".kicad_pcb", "_front.svg", "_front.png", "_back.svg", "_back.png")
-        ),
-    )
+    """The receiver's board and its pictures, to damage."""
+    ends = (".kicad_pcb", "_front.svg", "_front.png", "_back.svg", "_back.png")
+    paths = (f"boards/receiver/receiver{end}" for end in ends)
+    return excerpt(outputs, tmp_path / "pictures", *paths)
 
 
 def svg(old: str, new: str) -> Damage:
@@ -120,8 +113,8 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
 }
 
 
-def test_nothing_fails_as_it_is_written(copied: Path) -> None:
-    assert failing(copied, "pictures") == set()
+def test_nothing_fails_as_it_is_written(outputs: Path) -> None:
+    assert failing(outputs, "pictures") == set()
 
 
 @pytest.mark.parametrize("case", DAMAGES)
@@ -135,7 +128,8 @@ def test_a_damage_is_found(case: str, copied: Path) -> None:
 
 def failed(folder: Path) -> list[Measurement]:
     design = read_design(folder / "design.json")
-    return [m for m in pictures.measure(folder, design) if not m.passed]
+    found = pictures.measure_board(folder, design, "receiver")
+    return [m for m in found if not m.passed]
 
 
 def test_a_board_without_a_closed_edge_is_named(copied: Path) -> None:

@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from lumitip_fab.checks.board_read import ohm
+from lumitip_fab.checks.board_read import names_of, ohm
 from lumitip_fab.checks.readers.kicad_board import Part, read_board
 from lumitip_fab.checks.readers.spice import Element, Netlist, read_netlist
 from lumitip_fab.checks.result import Measurement, Subject, unreadable
@@ -22,9 +22,15 @@ _RESISTANCE = 0.02
 """How far a resistor may be off its part's value: one may be taken at its worst."""
 
 
-def measure(outputs: Path, _design: Design) -> Iterator[Measurement]:
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Every netlist beside a board."""
-    for path in sorted(outputs.glob("boards/*/*.cir")):
+    for name in names_of(design):
+        yield from measure_board(outputs, design, name)
+
+
+def measure_board(outputs: Path, _design: Design, name: str) -> Iterator[Measurement]:
+    """Every netlist beside one board."""
+    for path in sorted(outputs.glob(f"boards/{name}/*.cir")):
         of = Subject("netlists", path.relative_to(outputs).as_posix())
         try:
             found = read_netlist(path)

@@ -34,15 +34,20 @@ _MOST, _MOST_EDGES = 0.1, 40.0  # percent of all places
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Both pictures of both sides of every board."""
     for name in names_of(design):
-        try:
-            read = read_any(outputs, design, name)
-            if read.outline.is_empty:
-                raise OutputError("the board has no closed edge")
-        except OutputError as error:
-            yield unreadable("pictures.readable", f"boards/{name}", str(error))
-            continue
-        for side in ("front", "back"):
-            yield from _side(outputs / f"boards/{name}/{name}_{side}.svg", read, side)
+        yield from measure_board(outputs, design, name)
+
+
+def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurement]:
+    """Both pictures of both sides of a board."""
+    try:
+        read = read_any(outputs, design, name)
+        if read.outline.is_empty:
+            raise OutputError("the board has no closed edge")
+    except OutputError as error:
+        yield unreadable("pictures.readable", f"boards/{name}", str(error))
+        return
+    for side in ("front", "back"):
+        yield from _side(outputs / f"boards/{name}/{name}_{side}.svg", read, side)
 
 
 def _side(path: Path, read: ReadBoard, side: str) -> Iterator[Measurement]:
