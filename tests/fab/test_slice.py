@@ -106,9 +106,9 @@ def test_every_part_slices_without_support(
     assert_times_are_billed(outputs, parts)
     assert {name: parts[name]["layers"] for name in layers} == layers
     assert parts["fit/fit_plate.3mf"]["seconds"] <= 20 * 60
-    twice, none = {"mould/clamp.3mf", "mould/prop.3mf"}, preset == "published"
+    twice = {"mould/clamp.3mf", "mould/prop.3mf"}
     for name, part in parts.items():
-        number = 0 if none and name.startswith("mask/") else 2 if name in twice else 1
+        number = 0 if name.startswith("mask/") else 2 if name in twice else 1
         assert part["number"] == number, name
     for figure in ("grams", "seconds"):
         whole = sum(p["number"] * p[figure] for p in parts.values())

@@ -192,4 +192,4 @@ def test_a_mask_without_a_hole_stops_the_page(
 
 def test_the_same_files_give_the_same_bytes(site: Path, tmp_path: Path) -> None:
     moved = Path(shutil.copytree(site, tmp_path / "elsewhere"))
-    assert page(Folder.of(moved), []) == page(Folder.of(site), [])
+    assert page(Folder.of(moved), [], {}) == page(Folder.of(site), [], {})

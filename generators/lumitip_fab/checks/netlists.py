@@ -24,6 +24,8 @@ _RESISTANCE = 0.02
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Every netlist beside a board."""
+    if not any(outputs.glob("boards/*/*.cir")):
+        yield unreadable("netlists.readable", "boards", "there is no netlist")
     for name in names_of(design):
         yield from measure_board(outputs, design, name)
 
