@@ -13,16 +13,16 @@ pytestmark = pytest.mark.slow
 
 def _failed(out: Path) -> dict[str, str]:
     """Name and note of each figure out of its range."""
-    told = schematic.measure(out, read_design(out / "design.json"))
-    return {m.check.removeprefix("schematic."): m.note for m in told if not m.passed}
+    found = schematic.measure(out, read_design(out / "design.json"))
+    return {m.check.removeprefix("schematic."): m.note for m in found if not m.passed}
 
 
 @pytest.mark.parametrize("preset", ["small", "published"])
 def test_schematics_and_boards_agree(boards: Callable[[str], Path], preset: str) -> None:
     out = boards(preset)
-    told = list(schematic.measure(out, read_design(out / "design.json")))
-    assert [m.check for m in told] == ["schematic.parts", "schematic.fields", "schematic.nets"] * 4
-    assert all(m.passed for m in told), [m.note for m in told]
+    found = list(schematic.measure(out, read_design(out / "design.json")))
+    assert [m.check for m in found] == ["schematic.parts", "schematic.fields", "schematic.nets"] * 4
+    assert all(m.passed for m in found), [m.note for m in found]
 
 
 @pytest.mark.parametrize(

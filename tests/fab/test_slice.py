@@ -39,11 +39,11 @@ G1 X0 Y50 E4
 
 
 def test_layers_are_of_the_part_alone() -> None:
-    told = slicing.layers_of(CODE)
-    assert [layer.z_mm for layer in told] == [0.2, 0.4]
-    assert [layer.length_mm for layer in told] == pytest.approx([10.0, 10.0])
-    assert np.ptp(told[0].points_mm, axis=0).tolist() == pytest.approx([10.0, 0.0])
-    assert slicing.reach_mm(told) == pytest.approx((3.0, 0.4))
+    found = slicing.layers_of(CODE)
+    assert [layer.z_mm for layer in found] == [0.2, 0.4]
+    assert [layer.length_mm for layer in found] == pytest.approx([10.0, 10.0])
+    assert np.ptp(found[0].points_mm, axis=0).tolist() == pytest.approx([10.0, 0.0])
+    assert slicing.reach_mm(found) == pytest.approx((3.0, 0.4))
     assert slicing.seconds(CODE) == 93784 and slicing.grams(CODE) == 7.24
     with pytest.raises(BuildError, match="no time"):
         slicing.seconds("")
@@ -88,8 +88,8 @@ def test_every_part_slices_without_support(
     program("prusa-slicer")
     outputs = built(preset)
     assert main(["slice", "--out", str(outputs), "--gcode", str(tmp_path), "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    parts = {part["part"]: part for part in told["parts"]}
+    found = json.loads(capsys.readouterr().out)
+    parts = {part["part"]: part for part in found["parts"]}
     assert set(parts) == {p.relative_to(outputs).as_posix() for p in outputs.rglob("*.3mf")}
     assert {"backing/emitter_backing.3mf", "mould/receiver_mould.3mf"} <= set(parts)
     for name, part in parts.items():
@@ -112,7 +112,7 @@ def test_every_part_slices_without_support(
         assert part["number"] == number, name
     for figure in ("grams", "seconds"):
         whole = sum(p["number"] * p[figure] for p in parts.values())
-        assert told[figure] == pytest.approx(whole, abs=0.01)
+        assert found[figure] == pytest.approx(whole, abs=0.01)
 
 
 def test_a_folder_that_was_not_built_is_refused(

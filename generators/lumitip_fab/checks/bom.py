@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lumitip_fab.checks.board_read import names_of
 from lumitip_fab.checks.bom_numbers import measure_numbers
 from lumitip_fab.checks.cables import read_list
 from lumitip_fab.checks.readers.tables import table
@@ -66,7 +67,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         yield unreadable("bom.readable", _FILE, str(error))
         return
     yield count("bom.parts", _FILE, _wrong_parts(rows, parts, design), "wrong parts")
-    boards = {f"{name} board" for name in _boards(design)} | {"placing and soldering"}
+    boards = {f"{name} board" for name in names_of(design)} | {"placing and soldering"}
     wrong = sorted({row.item for row in rows if row.group == "boards"} ^ boards)
     yield count("bom.boards", _FILE, wrong, "wrong boards")
     yield _prints(rows, grams)
@@ -131,10 +132,6 @@ def _price(text: str) -> float | None:
     return _figure(text) if text else None
 
 
-def _boards(design: Design) -> tuple[str, ...]:
-    return (*(f.name for f in design.fingers), *(c.name for c in design.auxiliary_boards))
-
-
 Part = tuple[str, str]
 """Manufacturer, and order number."""
 
@@ -146,14 +143,13 @@ def _parts(outputs: Path, design: Design) -> Counter[Part]:
     Raises:
         OutputError: if no list has part and quantity, or one cannot be read.
     """
-    needed = {"manufacturer", "part", "quantity"}
     fabs = [fab for fab in design.fabs if {"part", "quantity"} <= {f for _, f in fab.bom}]
-    fab = max(fabs, key=lambda each: len(needed & {f for _, f in each.bom}), default=None)
+    fab = max(fabs, key=lambda f: "manufacturer" in {field for _, field in f.bom}, default=None)
     if fab is None:
         raise OutputError("no PCB fab's list has order numbers and quantities")
     heading = {field: head for head, field in fab.bom}
     found: Counter[Part] = Counter()
-    for name in _boards(design):
+    for name in names_of(design):
         path = outputs / f"boards/{name}/order/{fab.name}_{name}_bom.csv"
         try:
             for row in table(path.read_text(encoding="utf-8")):

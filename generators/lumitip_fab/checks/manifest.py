@@ -24,8 +24,8 @@ _PLACE_MM = 0.05
 _SQUARE = 1e-6
 _SOLIDS = (".stl", ".3mf", ".step")
 _REPORTS = (manifest.NAME, *manifest.REPORTS, "README.md", "bench-tasks/*")
-"""What else this project writes into an output folder, by `make outputs` and `make bench`, and the
-page of the folder `outputs` in its source."""
+"""Files that `make outputs` and `make bench` write beside those of a build, and the page of the
+folder `outputs` in the source."""
 _EDITORS = (
     *(".*", "~*", "*~", "#*#", "_autosave-*", "*.bak", "*-bak", "*.lck", "*-backups"),
     *("*.kicad_prl", "fp-info-cache", "Thumbs.db", "desktop.ini"),

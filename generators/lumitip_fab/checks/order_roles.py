@@ -1,4 +1,4 @@
-"""What each layer of a zip says that it is: a fab that reads these attributes believes them."""
+"""The attributes of a zip's layers: a fab that reads them believes them."""
 
 import re
 from collections.abc import Iterator, Mapping

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from lumitip_fab.checks.board_read import ReadBoard
+from lumitip_fab.checks.order_layers import PLACE_MM
 from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.result import Measurement, count
 from lumitip_fab.design import Fab
 
-PLACE_MM = 0.001
 TURN_DEG = 0.1
 Files = dict[str, bytes]
 """Contents of a zip, by name."""

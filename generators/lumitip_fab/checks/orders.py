@@ -10,7 +10,12 @@ import numpy as np
 import shapely
 
 from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, read_any
-from lumitip_fab.checks.order_layers import Painted, measure_layers, measure_stiffener
+from lumitip_fab.checks.order_layers import (
+    PLACE_MM,
+    Painted,
+    measure_layers,
+    measure_stiffener,
+)
 from lumitip_fab.checks.order_tables import Files, measure_tables, tables_twice
 from lumitip_fab.checks.panel_read import read_panel
 from lumitip_fab.checks.readers.tables import unpacked
@@ -20,7 +25,6 @@ from lumitip_fab.errors import OutputError
 
 READS = ("boards/*.kicad_pcb", "boards/*.zip", "boards/*.csv")
 STOP_FILE = "STOP_READ_FIRST.txt"
-PLACE_MM = 0.001
 SIZE_MM = 0.006
 _TERMINALS = re.compile(
     r"^(?P<ref>[DQ]\d+(?:_\d+)?)  (?P<one>[a-z]+) (?P<x1>\S+) (?P<y1>\S+)  "

@@ -55,7 +55,7 @@ def write_page(out: Path, watched: bool = False) -> Path:
 
 @cache
 def _errors(layout: str) -> dict[str, float]:
-    """Rms errors that the twin lets expect, by figure; a page that is written anew asks again."""
+    """Rms errors that the twin lets expect, by figure; kept for a page that is watched."""
     from lumitip_fab.solve.information import USUAL, expected
 
     return expected(Layout.from_json(layout), USUAL).rms()

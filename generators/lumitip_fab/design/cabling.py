@@ -2,7 +2,7 @@
 insulation."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from lumitip_fab.design.pcb import AuxiliaryBoard, Component
@@ -163,23 +163,27 @@ class Cabling:
 def gripper_headers(auxiliary_boards: Iterable[AuxiliaryBoard]) -> list[str]:
     """References of the flange's headers that have a line of the robot, or its supply before the
     fuse: what the gripper's own cable starts at, sorted."""
-    return sorted(
-        part.ref
-        for board in auxiliary_boards
-        if board.name == "flange"
-        for part in front_headers(board)
-        if any(net not in board.supplies or net.endswith(INPUT_END) for _, net in part.nets)
+    return _flange_headers(
+        auxiliary_boards,
+        lambda board, net: net not in board.supplies or net.endswith(INPUT_END),
     )
 
 
 def supplied_headers(auxiliary_boards: Iterable[AuxiliaryBoard]) -> list[str]:
     """References of the flange's headers that have the robot's supply before the fuse, sorted."""
+    return _flange_headers(auxiliary_boards, lambda _, net: net.endswith(INPUT_END))
+
+
+def _flange_headers(
+    auxiliary_boards: Iterable[AuxiliaryBoard], wanted: Callable[[AuxiliaryBoard, str], bool]
+) -> list[str]:
+    """References of the flange's headers with a net that is wanted, sorted."""
     return sorted(
         part.ref
         for board in auxiliary_boards
         if board.name == "flange"
         for part in front_headers(board)
-        if any(net.endswith(INPUT_END) for _, net in part.nets)
+        if any(wanted(board, net) for _, net in part.nets)
     )
 
 

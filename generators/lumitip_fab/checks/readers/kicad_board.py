@@ -296,7 +296,5 @@ class _Reader:
 
 
 def _model(node: Node) -> Model:
-    places = (
-        numbers(child(child(node, name) or [], "xyz")) for name in ("offset", "scale", "rotate")
-    )
-    return Model(str(node[1]), *places)
+    named = (child(node, name) or [] for name in ("offset", "scale", "rotate"))
+    return Model(str(node[1]), *(numbers(child(each, "xyz")) for each in named))

@@ -55,7 +55,7 @@ class Model:
 
     name: str
     settings: dict[str, str]
-    """What MuJoCo is told of the file."""
+    """Settings for MuJoCo in the file."""
     links: dict[str, Link]
     joints: dict[str, Joint]
 
