@@ -101,17 +101,21 @@ def _gap(read: ReadBoard, least_mm: float) -> Measurement:
 
 def _edge_gap(read: ReadBoard, least_mm: float) -> Measurement:
     """The narrowest gap from copper to the edge."""
-    copper = [piece.area for piece in read.clusters.pieces]
-    inside = all(read.outline.contains(area) for area in copper)
-    gap = float(shapely.distance(read.outline.boundary, copper).min()) if inside else -math.inf
+    copper, edge = [piece.area for piece in read.clusters.pieces], read.outline.boundary
+    shapely.prepare([read.outline, edge])
+    inside = shapely.contains(read.outline, copper).all()
+    gap = float(shapely.distance(edge, copper).min()) if inside else -math.inf
     return read.figure("edge_clearance", gap, least_mm - _ROUND_MM, math.inf)
 
 
 def _hole_gap(read: ReadBoard, least_mm: float) -> Measurement:
     """The narrowest gap from copper to unplated holes."""
     copper = [piece.area for piece in read.clusters.pieces]
-    holes = [shapely.Point(h.at).buffer(h.drill_mm / 2, quad_segs=32) for h in read.holes]
-    gaps = [float(shapely.distance(hole, copper).min()) for hole in holes]
+    shapely.prepare(copper)
+    gaps = [
+        float(shapely.distance(copper, shapely.Point(hole.at)).min()) - hole.drill_mm / 2
+        for hole in read.holes
+    ]
     return read.figure("hole_clearance", min(gaps), least_mm - _ROUND_MM, math.inf)
 
 

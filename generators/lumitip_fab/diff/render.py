@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from lumitip_fab.parts.surface import Mesh
+from lumitip_fab.scenes.depths import counted, parts_of
 from lumitip_fab.scenes.drawing import SHARP_DEG, View, view
 
 Array = NDArray[np.float64]
@@ -83,7 +84,7 @@ def _seen(corners: Array, shape: tuple[int, ...]) -> tuple[Array, Array, Array]:
     nearest, through = np.full(count, -np.inf), np.zeros(count)
     seen = np.full(count, -1)
     rows = _lengths(corners[:, :, 1])
-    for part in _chunks(rows[1] * np.ptp(corners[:, :, 0], axis=1)):
+    for part in parts_of(rows[1] * np.ptp(corners[:, :, 0], axis=1), _CHUNK):
         triangle, x, y = _pixels(corners, across, part)
         start, normal = corners[triangle, 0], across[triangle]
         off = normal[:, 0] * (x - start[:, 0]) + normal[:, 1] * (y - start[:, 1])
@@ -103,7 +104,7 @@ def _pixels(corners: Array, across: Array, part: Indices) -> tuple[Indices, Indi
     common edge of two lies in one of them."""
     first, count = _lengths(corners[part, :, 1])
     line = np.repeat(np.arange(len(part)), count)
-    y = first[line] + _counted(count)
+    y = first[line] + counted(count)
     low, high = np.full(len(y), -np.inf), np.full(len(y), np.inf)
     turn = np.sign(across[part, 2])
     for one, other in ((0, 1), (1, 2), (2, 0)):
@@ -115,25 +116,13 @@ def _pixels(corners: Array, across: Array, part: Indices) -> tuple[Indices, Indi
         high = np.where(rise > 0, np.minimum(high, x), high)
     left, width = _lengths(np.stack([low, high], axis=1))
     pixel = np.repeat(np.arange(len(y)), width)
-    return part[line[pixel]], left[pixel] + _counted(width), y[pixel]
+    return part[line[pixel]], left[pixel] + counted(width), y[pixel]
 
 
 def _lengths(ends: Array) -> tuple[Indices, Indices]:
     """First whole number, and how many there are, from the least to below the largest of ends."""
     first, last = np.ceil(ends.min(axis=1)), np.ceil(ends.max(axis=1))
     return first.astype(np.int64), (last - first).astype(np.int64)
-
-
-def _counted(counts: Indices) -> Indices:
-    """0, 1, 2 … for each count."""
-    ends = np.cumsum(counts)
-    return np.arange(int(counts.sum())) - np.repeat(ends - counts, counts)
-
-
-def _chunks(sizes: Array) -> list[Indices]:
-    """Triangles in parts of about the same number of pixels."""
-    breaks = np.flatnonzero(np.diff(np.cumsum(sizes) // _CHUNK)) + 1
-    return np.split(np.arange(len(sizes)), breaks)
 
 
 def _brightness(depth: Array, normal: Array, step_mm: float) -> Array:

@@ -3,6 +3,7 @@
 import io
 import re
 from collections.abc import Iterator
+from functools import partial
 from html import escape
 from itertools import pairwise
 
@@ -102,7 +103,11 @@ def _kept(tokens: list[Token], files: Files) -> list[Flowable]:
     fewest, if need be with smaller drawings; one without begins below the step before it."""
     if not any(child.type == "image" for token in tokens for child in token.children or []):
         return list(_flowables(tokens, files))
-    return kept_step([list(_flowables(tokens, files, share)) for share in _SHARES])
+    return kept_step([partial(_step, tokens, files, share) for share in _SHARES])
+
+
+def _step(tokens: list[Token], files: Files, share: float) -> list[Flowable]:
+    return list(_flowables(tokens, files, share))
 
 
 def _flowables(tokens: list[Token], files: Files, share: float = 1.0) -> Iterator[Flowable]:

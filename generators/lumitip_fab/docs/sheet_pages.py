@@ -2,6 +2,7 @@
 
 import io
 import math
+from collections.abc import Callable
 from itertools import count
 
 from reportlab.lib.pagesizes import A4
@@ -17,14 +18,18 @@ _HIGH = A4[1] - 2 * MARGIN_HIGH - 12  # less the frame's own padding
 _EMPTY = 0.35  # of a page that the next step then begins on
 
 
-def kept_step(choices: list[list[Flowable]]) -> list[Flowable]:
+def kept_step(choices: list[Callable[[], list[Flowable]]]) -> list[Flowable]:
     """A step on one page, with the largest drawings that allow it, or one of more pages.
 
     Args:
-        choices: the step, with smaller and smaller drawings.
+        choices: give the step, with smaller and smaller drawings; called where they are needed.
     """
-    on_one = next((step for step in choices if _pages(step, _HIGH) == 1), None)
-    return [_Long(choices)] if on_one is None else [KeepTogether(on_one)]
+    steps = []
+    for choice in choices:
+        steps.append(choice())
+        if _pages(steps[-1], _HIGH) == 1:
+            return [KeepTogether(steps[-1])]
+    return [_Long(steps)]
 
 
 class _Long(Flowable):  # type: ignore[misc]

@@ -12,6 +12,7 @@ import trimesh
 from numpy.typing import NDArray
 
 from lumitip_fab.parts.surface import Mesh
+from lumitip_fab.scenes.depths import PIXEL_MM, counted, depths_mm, sides
 
 Points = NDArray[np.float64]
 LINE_MM = 9.0  # from label to label
@@ -147,13 +148,11 @@ class Sheet:
         return "L".join(f"{x:.2f},{0.0 - y:.2f}" for x, y in points.tolist())
 
 
-PIXEL_MM = 0.25
 PIECE_MM = 0.6  # of an edge that is seen or not as a whole
 BEHIND_MM = 0.4  # by which a line may lie behind what is nearest: the buffer's own error
 SHARP_DEG = 25.0  # between two faces, to be drawn as an edge
 _NEAR_MM = 0.02  # of a simplified line from what it stands for
 _EDGE_ON = 1e-2  # sine of the angle of a face to the line of sight, at most
-_FLAT = 1e-9  # twice the area of a triangle that covers nothing, in pixels
 _SLIT_MM = 0.01  # half the width of a slit in a silhouette that is closed
 
 
@@ -211,40 +210,10 @@ def silhouette(mesh: Mesh, seen_by: View) -> list[Points]:
 def visible_lines(meshes: list[Mesh], seen_by: View) -> list[list[Points]]:
     """Sharp edges and contours of each body that no body hides, on the page."""
     seen = [seen_by.seen(mesh.points_mm) for mesh in meshes]
-    low = np.min([points[:, :2].min(axis=0) for points in seen], axis=0) - 2 * PIXEL_MM
-    high = np.max([points[:, :2].max(axis=0) for points in seen], axis=0) + 2 * PIXEL_MM
-    depths = _depths(meshes, seen, low, high)
+    low, depths = depths_mm(
+        points[mesh.triangles] for mesh, points in zip(meshes, seen, strict=True)
+    )
     return [_lines(mesh, points, depths, low) for mesh, points in zip(meshes, seen, strict=True)]
-
-
-def _depths(meshes: list[Mesh], seen: list[Points], low: Points, high: Points) -> Points:
-    """The greatest height above the page in each pixel."""
-    width, height = np.ceil((high - low) / PIXEL_MM).astype(int) + 1
-    depths = np.full((int(height), int(width)), -np.inf)
-    for mesh, points in zip(meshes, seen, strict=True):
-        corners = points[mesh.triangles]
-        corners[:, :, :2] = (corners[:, :, :2] - low) / PIXEL_MM
-        first, last = np.ceil(corners.min(axis=1)), np.floor(corners.max(axis=1))
-        covers = (first <= last)[:, :2].all(axis=1) & (np.cross(*_sides(corners))[:, 2] > _FLAT)
-        for corner in corners[covers]:
-            _fill(depths, corner)
-    return depths
-
-
-def _fill(depths: Points, corner: Points) -> None:
-    """Raise a buffer to a triangle that looks to the viewer."""
-    (x0, y0, z0), (x1, y1, z1), (x2, y2, z2) = corner.tolist()
-    area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
-    left, right = math.ceil(min(x0, x1, x2)), math.floor(max(x0, x1, x2))
-    bottom, top = math.ceil(min(y0, y1, y2)), math.floor(max(y0, y1, y2))
-    x = np.arange(left, right + 1)[None, :]
-    y = np.arange(bottom, top + 1)[:, None]
-    one = ((x - x0) * (y2 - y0) - (y - y0) * (x2 - x0)) / area
-    two = ((x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)) / area
-    within = (one >= -1e-9) & (two >= -1e-9) & (one + two <= 1 + 1e-9)
-    z = np.where(within, z0 + one * (z1 - z0) + two * (z2 - z0), -np.inf)
-    window = depths[bottom : top + 1, left : right + 1]
-    np.maximum(window, z, out=window)
 
 
 def _lines(mesh: Mesh, seen: Points, depths: Points, low: Points) -> list[Points]:
@@ -253,7 +222,7 @@ def _lines(mesh: Mesh, seen: Points, depths: Points, low: Points) -> list[Points
     lengths = np.linalg.norm(ends - starts, axis=1)
     counts = np.maximum(np.ceil(lengths / PIECE_MM).astype(int), 1)
     edge = np.repeat(np.arange(len(counts)), counts)
-    step = np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts)
+    step = counted(counts)
     share = counts[edge][:, None]
     way = ends[edge] - starts[edge]
     first = starts[edge] + way * (step[:, None] / share)
@@ -283,10 +252,5 @@ def _edges(mesh: Mesh, seen: Points) -> tuple[Points, Points]:
 def _front(mesh: Mesh, seen: Points) -> NDArray[np.bool_]:
     """Whether each triangle looks to the viewer; one that is seen edge-on does not: which way it
     turns is rounding, and every edge of an upright wall would be drawn."""
-    normal = np.cross(*_sides(seen[mesh.triangles]))
+    normal = np.cross(*sides(seen[mesh.triangles]))
     return np.asarray(normal[:, 2] > _EDGE_ON * np.linalg.norm(normal, axis=1))
-
-
-def _sides(corners: Points) -> tuple[Points, Points]:
-    """Two sides of each triangle, from its first corner."""
-    return corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]

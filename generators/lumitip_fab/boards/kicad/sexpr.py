@@ -35,8 +35,11 @@ def written(node: Node) -> str:
 def _lines(node: Node, depth: int) -> Iterator[str]:
     """One line where it fits; else the keyword with its plain values, then a line per node."""
     indent = "  " * depth
-    flat = _flat(node)
-    if len(indent) + len(flat) <= _WIDTH or not any(isinstance(v, tuple) for v in node):
+    if not any(isinstance(v, tuple) for v in node):
+        yield indent + _flat(node)
+        return
+    flat = _fitting(node, _WIDTH - len(indent))
+    if flat is not None:
         yield indent + flat
         return
     plain = 0
@@ -58,6 +61,20 @@ def _lines(node: Node, depth: int) -> Iterator[str]:
     if packed:
         yield f"{indent}  {packed}"
     yield indent + ")"
+
+
+def _fitting(node: Node, room: int) -> str | None:
+    """A node as one line of at most so many letters; no more of it is written than shows that it
+    is longer."""
+    written_so_far = ["(" + _flat(node[0])]
+    room -= len(written_so_far[0]) + 1
+    for value in node[1:]:
+        text = _fitting(value, room - 1) if isinstance(value, tuple) else _flat(value)
+        if text is None or len(text) + 1 > room:
+            return None
+        written_so_far.append(text)
+        room -= len(text) + 1
+    return " ".join(written_so_far) + ")"
 
 
 def _flat(value: Value) -> str:
