@@ -3,6 +3,7 @@
 import csv
 import json
 import re
+import shutil
 import sys
 from pathlib import Path
 
@@ -87,6 +88,9 @@ def test_a_study_is_written_and_its_points_are_parameter_files(
     command = ["design", str(file), "--points", "1", "--out"]
     assert main([*command, str(tmp_path / "a")]) == 0
     printed = capsys.readouterr().out
+    # The second run goes on from the journal of the first, and writes the same bytes.
+    (tmp_path / "b").mkdir()
+    shutil.copy(tmp_path / "a/evaluated.jsonl", tmp_path / "b")
     assert main([*command, str(tmp_path / "b"), "--quiet"]) == 0
     names = {f.name for f in (tmp_path / "a").iterdir()}
     pictures = {f"{name}.{kind}" for name in ("front", "directions") for kind in ("svg", "png")}
@@ -108,6 +112,13 @@ def test_a_study_is_written_and_its_points_are_parameter_files(
     assert layout.optics.hole_mm == best["changes"]["mask.hole_mm"]
     rows = list(csv.DictReader((tmp_path / "a/front.csv").read_text().splitlines()))
     assert {name: float(rows[0][name]) for name in FIGURES} == best["figures"]
+    for point in study["points"]:
+        assert point["confirmed_meets_goals"] == (point["confirmed"]["edge_mm"] <= 0.12)
+    met = [point["name"] for point in study["points"] if point["confirmed_meets_goals"]]
+    words = " ".join(printed.split())
+    assert (
+        f"The estimator keeps the goals with {', '.join(met) or 'none of these designs'}." in words
+    )
     assert "point-1" in printed
     assert "4 designs judged (all)" in printed
 

@@ -117,9 +117,14 @@ def print_study(found: Study, console: Console) -> None:
         for text in reasons:
             console.print(f"  {text}", soft_wrap=True)
     else:
-        first = min(search.front, key=lambda one: one.figures["error"])
-        met = "are met" if first.figures["error"] <= 1.0 else "are not met by any design"
-        console.print(f"The goals {met}, by expected errors.")
+        best = min(one.figures["error"] for one in search.front)
+        met = [point.name for point in found.points if found.meets(point)]
+        expected = "some" if best <= 1.0 else "none"
+        console.print(
+            f"The estimator keeps the goals with {', '.join(met) or 'none of these designs'}. "
+            f"By expected errors, which know no ambiguous poses, {expected} of all designs do.",
+            soft_wrap=True,
+        )
 
 
 def _of_base(base: Input, field: str) -> object:

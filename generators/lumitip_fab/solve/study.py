@@ -57,6 +57,11 @@ class Study:
     points: tuple[Point, ...]
     """The base first."""
 
+    def meets(self, point: Point) -> bool:
+        """Whether the estimator's errors with a point keep all goals."""
+        goals = self.task.targets.errors
+        return all(point.confirmed[name] <= goal for name, goal in goals.items())
+
     @property
     def nearest(self) -> Judged | None:
         """Without any design that keeps all limits: the one that is closest to them."""
@@ -150,8 +155,9 @@ def summary(found: Study) -> dict[str, Any]:
                 "name": point.name,
                 "changes": dict(point.judged.changes),
                 "columns": list(point.judged.columns),
-                "figures": point.judged.figures,
+                "figures": dict(sorted(point.judged.figures.items())),
                 "confirmed": point.confirmed,
+                "confirmed_meets_goals": found.meets(point),
                 "tried": list(point.tried),
             }
             for point in found.points

@@ -19,6 +19,10 @@ from lumitip_fab.tolerance.streams import Stream, generator
 COLUMNS = ("as built", "after tare", "after self-calibration")
 """States of a finger that its errors are counted in."""
 KINDS = ("edge", "cable")
+POSE_SETS = 64
+"""Sets of poses, of which each finger is tried at one: what a finger's errors are depends on its
+poses as much as on its deviations. A power of 2, so that in a Sobol study the fingers that differ
+in one deviation have the same poses."""
 LEARNING = 40
 """Edges by which a finger calibrates itself."""
 AGREED = (0.05, 0.2)
@@ -33,7 +37,7 @@ class Case:
     layout: Layout
     model: Model
     poses: int
-    """Of edges, and as many of cables."""
+    """Of edges, and as many of cables, in each set."""
     seed: int
 
 
@@ -50,18 +54,23 @@ class Frames:
 class Bench:
     """Tries built fingers; holds rays and tables of the drawing."""
 
-    def __init__(self, case: Case) -> None:
-        """Prepare lines, noise, rays and the estimator."""
+    def __init__(self, case: Case, number: int = 0) -> None:
+        """Prepare lines, noise, rays and the estimator.
+
+        Args:
+            case: the drawing.
+            number: of the set of poses, below `POSE_SETS`.
+        """
         self._layout, self._model = case.layout, case.model
-        self._rays = Rays(case.layout, case.model)
-        self.estimates = Estimates(case.layout, case.model)
+        self._rays = _rays(case)
+        self.estimates = _estimates(case)
         self._empty = Twin(case.layout, case.model).empty
-        self.lines = {kind: lines(case, kind, case.poses) for kind in KINDS}
+        self.lines = {kind: lines(case, kind, case.poses, number) for kind in KINDS}
         """True poses."""
-        self.use = {"use": lines(case, "edge", LEARNING, 1)}
+        self.use = {"use": lines(case, "edge", LEARNING, POSE_SETS + number)}
         """Edges of self-calibration."""
-        chance = generator(case.seed, Stream.NOISE)
-        # The same noise for every finger: what differs between fingers is how they are built.
+        chance = generator(case.seed, Stream.NOISE, number)
+        # The same noise for each of these fingers: what differs between them is how they are built.
         self._noise = {
             name: NOISE * chance.standard_normal((len(of.poses), len(case.layout)))
             for name, of in (self.lines | self.use).items()
@@ -153,6 +162,16 @@ def lines(case: Case, kind: str, count: int, draw: int = 0) -> Lines:
 
 
 @lru_cache(maxsize=2)
-def bench(case: Case) -> Bench:
-    """The bench of a case, one in each process."""
-    return Bench(case)
+def _rays(case: Case) -> Rays:
+    return Rays(case.layout, case.model)
+
+
+@lru_cache(maxsize=2)
+def _estimates(case: Case) -> Estimates:
+    return Estimates(case.layout, case.model)
+
+
+@lru_cache(maxsize=2 * POSE_SETS)
+def bench(case: Case, number: int = 0) -> Bench:
+    """The bench of a case and a set of poses, one in each process."""
+    return Bench(case, number)

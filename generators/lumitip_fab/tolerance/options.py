@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from lumitip_fab.catalogue.tolerances import MaskConditions
 from lumitip_fab.errors import InputError, Problem
 
-GOOD_PERCENT = 95.0
+GOOD_PERCENT = 90.0
 """Share of the fingers that are good with the largest shift of the masks."""
-MASK_FINGERS = 200
+MASK_FINGERS = 500
 """Largest number of fingers by which the shift of the masks is found."""
 _MOST_GOAL_MM, _MOST_GOAL_DEG = 1.0, 5.0  # half of a gross error
 

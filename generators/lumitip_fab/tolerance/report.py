@@ -26,8 +26,9 @@ _NO_INDICES = (
     "more."
 )
 OPTIMISTIC = (
-    "Optimistic: self-calibration learns in the gap that it is tested in, fits begin near the true "
-    "pose or at the bank's, and frames that PoseEstimator flags as ambiguous count as found."
+    "Optimistic: self-calibration learns in the gap and with the drift that it is tested with, "
+    "fits begin near the true pose or at the bank's, and frames that PoseEstimator flags as "
+    "ambiguous count as found."
 )
 _UNITS = {"mm": " mm", "deg": "°", "share": " %"}
 
@@ -39,7 +40,7 @@ def print_tables(study: dict[str, Any], console: Console) -> None:
         title=f"{study['fingers']} built pairs of fingers, {study['poses']['edge']} edges and "
         f"{study['poses']['cable']} cables each, gap {study['gap_mm']:g} mm; "
         f"{study['evidence']}",
-        caption="Intervals: for these poses; other poses are not in them.",
+        caption=f"Fingers are tried at {study['poses']['sets']} sets of poses in turn.",
     )
     table.add_column("")
     for heading in ("good", "95 % interval", "gross errors", "edge mm, °", "cable mm, °"):
@@ -77,13 +78,19 @@ def print_tables(study: dict[str, Any], console: Console) -> None:
 
 def mask_line(shift: dict[str, Any]) -> str:
     """How far both masks may be off, from `mask_shift` of a study."""
-    share = f"{GOOD_PERCENT:g} % of {shift['fingers']} fingers"
+    low, high = (100 * end for end in shift["yield_95"])
+    good = f"{100 * shift['yield']:.0f} % of {shift['fingers']} fingers"
+    interval = f"95 % interval {low:.0f} to {high:.0f} %"
     if shift["mm"] is None:
-        return f"Fewer than {share} are good even with every mask in its place."
+        return (
+            f"Even with every mask in its place fewer than {GOOD_PERCENT:g} % are good after a "
+            f"tare: {good} ({interval})."
+        )
     more = " or more" if shift["or_more"] else ""
     return (
         f"Both masks may be off by {shift['mm']:g} mm{more} against their fingers, in any "
-        f"direction: {share} are then good after a tare, with their other deviations."
+        f"direction: {good} are then good after a tare ({interval}), with their other deviations. "
+        f"With less it is {GOOD_PERCENT:g} % or more."
     )
 
 
@@ -169,9 +176,7 @@ def picture(study: dict[str, Any]) -> bytes:
     for place, (share, top) in enumerate(zip(good, ends[:, 1], strict=True)):
         left.text(place, top + 1.0, f"{share:.1f}", ha="center")
     left.set(ylim=(0.0, 110.0), yticks=range(0, 101, 20))
-    left.set_ylabel(
-        f"good fingers (%): {goals['position_mm']:g} mm, {goals['angle_deg']:g}°, for these poses"
-    )
+    left.set_ylabel(f"good fingers (%): {goals['position_mm']:g} mm, {goals['angle_deg']:g}°")
     entries = [entry for entry in study["tolerances"].values() if "total" in entry]
     rows = np.arange(len(entries))
     for shift, figures, colour in zip((-0.2, 0.2), _FIGURES, ("#4c78a8", "#f58518"), strict=True):

@@ -1,13 +1,14 @@
 """A study of tolerances: yield, error percentiles, sensitivities, and how far a mask may be off."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lumitip.estimation import EstimationError
 from lumitip.grid import Floats
@@ -18,7 +19,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.config.messages import shown_path
 from lumitip_fab.derive.making.tolerances import MODEL_VERSION, fingerprint, spreads
 from lumitip_fab.errors import BuildError, InputError, Problem
-from lumitip_fab.tolerance.bench import COLUMNS, Case, bench
+from lumitip_fab.tolerance.bench import COLUMNS, POSE_SETS, Case, bench
 from lumitip_fab.tolerance.draws import FACTORS, Draws, draw
 from lumitip_fab.tolerance.options import GOOD_PERCENT, MASK_FINGERS, Goals, Options
 from lumitip_fab.tolerance.sobol import indices, mixed
@@ -29,8 +30,9 @@ _CHUNK = 20  # fingers
 _PERCENTILES = (50, 90, 95)  # of the errors
 LEAST_DRAWS = 64
 """With fewer draws there are no Sobol indices."""
-_MASK_STEPS, _MASK_STEP_MM = 31, 0.05
-MOST_SHIFT_MM = round(_MASK_STEPS * _MASK_STEP_MM, 2)
+_MASK_STEPS = 15
+MASK_STEP_MM = 0.1
+MOST_SHIFT_MM = round(_MASK_STEPS * MASK_STEP_MM, 2)
 """Largest shift of the masks that is tried."""
 _BEST = 3  # deviations of which the yield without them is computed
 _SEARCHED = 10  # fingers that the whole estimator is compared on
@@ -38,8 +40,13 @@ _DIGITS = 4
 _LEAST_EXTENT_MM = 0.1
 
 
+Indices = NDArray[np.intp]
 Errors = Callable[[Draws, tuple[str, ...]], Floats]
 """Errors of fingers as `Bench.errors` has them."""
+Part = tuple[Case, int, Draws, tuple[str, ...], Indices]
+"""Fingers of one set of poses: its number, their deviations, the columns, and their places."""
+Run = Callable[[Callable[[Part], tuple[Indices, Floats]], list[Part]], Iterable[Any]]
+"""`map`, here or on several processes."""
 
 
 def study(
@@ -71,7 +78,7 @@ def study(
             for name in names[:_BEST]
         }
         few = take(min(MASK_FINGERS, options.fingers), options.seed)
-        mask_mm = mask_allowance_mm(errors, few, options.goals)
+        mask_mm, mask_share = mask_allowance(errors, few, options.goals)
     entries = {
         name: {
             "title": entry.title,
@@ -93,7 +100,7 @@ def study(
         "goals": vars(options.goals),
         "gap_mm": options.gap_mm,
         "fingers": options.fingers,
-        "poses": {"edge": options.poses, "cable": options.poses},
+        "poses": {"edge": options.poses, "cable": options.poses, "sets": POSE_SETS},
         "seed": options.seed,
         "columns": {
             name: _column(rows, options.goals) for name, rows in zip(COLUMNS, columns, strict=True)
@@ -105,6 +112,8 @@ def study(
             "mm": mask_mm,
             "or_more": mask_mm == MOST_SHIFT_MM,
             "fingers": len(few["gap"]),
+            "yield": _rounded(mask_share),
+            "yield_95": [_rounded(end) for end in wilson(mask_share, len(few["gap"]))],
         },
         "pose_estimator": bench(case).compared(take(_SEARCHED, options.seed)),
     }
@@ -137,26 +146,31 @@ def case_of(config: Input, layout: Layout, options: Options) -> Case:
     return case
 
 
-def mask_allowance_mm(errors: Errors, drawn: Draws, goals: Goals) -> float | None:
-    """The largest shift of both masks, each in a random direction, with which `GOOD_PERCENT` of the
-    fingers drawn meet the goals after a tare, all their other deviations unchanged.
+def mask_allowance(errors: Errors, drawn: Draws, goals: Goals) -> tuple[float | None, float]:
+    """The largest shift of both masks, each in a random direction, up to which `GOOD_PERCENT` of
+    the fingers drawn meet the goals after a tare, all their other deviations unchanged.
 
     Returns:
-        A multiple of 0.05 mm; at `MOST_SHIFT_MM` the masks may be off by more. None if too few
-        fingers are good without any shift.
+        The shift, a multiple of `MASK_STEP_MM`; at `MOST_SHIFT_MM` the masks may be off by more.
+        None if too few fingers are good without any shift. And the yield with it.
     """
+    found, good = None, 0.0
+    for steps in range(_MASK_STEPS + 1):
+        shift_mm = round(steps * MASK_STEP_MM, 2)
+        share = shifted_yield(errors, drawn, goals, shift_mm)
+        if share < GOOD_PERCENT / 100.0:
+            return found, good if steps else share
+        found, good = shift_mm, share
+    return found, good
+
+
+def shifted_yield(errors: Errors, drawn: Draws, goals: Goals, shift_mm: float) -> float:
+    """Share of the fingers that meet the goals after a tare if both masks are off by a length, each
+    in a random direction."""
     way = drawn["mask_shift"].reshape(-1, 2, 2)
     way = way / np.maximum(np.linalg.norm(way, axis=2, keepdims=True), 1e-9)
-
-    def holds(steps: int) -> bool:
-        shifted = {**drawn, "mask_shift": (steps * _MASK_STEP_MM * way).reshape(len(way), 4)}
-        return yield_of(errors(shifted, _TARED)[0], goals) >= GOOD_PERCENT / 100.0
-
-    low, high = -1, _MASK_STEPS + 1
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (middle, high) if holds(middle) else (low, middle)
-    return round(low * _MASK_STEP_MM, 2) if low >= 0 else None
+    shifted = {**drawn, "mask_shift": (shift_mm * way).reshape(len(way), 4)}
+    return yield_of(errors(shifted, _TARED)[0], goals)
 
 
 def draws_of(fingers: int) -> int:
@@ -233,29 +247,35 @@ def wilson(share: float, count: int) -> tuple[float, float]:
 
 @contextmanager
 def on_cores(case: Case, cores: int | None) -> Iterator[Errors]:
-    """A function like `Bench.errors` on several processes."""
+    """A function like `Bench.errors` on several processes; one finger after the other is tried at
+    the next of `POSE_SETS`."""
     if cores == 1:
-        yield bench(case).errors
+        yield partial(_errors, case, map)
         return
     with workers(cores or 1_000) as pool:
-
-        def errors(drawn: Draws, columns: tuple[str, ...]) -> Floats:
-            count = len(drawn["gap"])
-            parts = [
-                (case, {name: rows[at : at + _CHUNK] for name, rows in drawn.items()}, columns)
-                for at in range(0, count, _CHUNK)
-            ]
-            try:
-                return np.concatenate(list(pool.map(_errors_of, parts)), axis=1)
-            except BrokenProcessPool as error:
-                raise BuildError("a worker was stopped from outside; run it again") from error
-
-        yield errors
+        try:
+            yield partial(_errors, case, pool.map)
+        except BrokenProcessPool as error:
+            raise BuildError("a worker was stopped from outside; run it again") from error
 
 
-def _errors_of(part: tuple[Case, Draws, tuple[str, ...]]) -> Floats:
-    case, drawn, columns = part
-    return bench(case).errors(drawn, columns)
+def _errors(case: Case, run: Run, drawn: Draws, columns: tuple[str, ...] = COLUMNS) -> Floats:
+    count = len(drawn["gap"])
+    parts: list[Part] = [
+        (case, number, {name: rows[some] for name, rows in drawn.items()}, columns, some)
+        for number in range(min(POSE_SETS, count))
+        for all_ in [np.arange(number, count, POSE_SETS)]
+        for some in np.split(all_, range(_CHUNK, len(all_), _CHUNK))
+    ]
+    found = np.empty((len(columns), count, 5))
+    for some, errors in run(_errors_of, parts):
+        found[:, some] = errors
+    return found
+
+
+def _errors_of(part: Part) -> tuple[Indices, Floats]:
+    case, number, drawn, columns, some = part
+    return some, bench(case, number).errors(drawn, columns)
 
 
 def _rounded(value: float) -> float:

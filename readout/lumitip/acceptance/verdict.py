@@ -133,10 +133,13 @@ class Judge:
         )
 
     def unseen(self, empty: Values, sheet: Values, moving: Values) -> str | None:
-        """Why swapped cells cannot be found in the frames of these steps; `None` if they can."""
+        """Why swapped cells cannot be found in the frames of these steps; `None` if they can.
+
+        Cells with a fault of their own, such as dead ones, need not be seen.
+        """
         frames = Frames(empty, sheet, moving, ())
-        every: Mask = np.ones(len(self._layout), bool)
-        return self._places(_calibrated(moving, frames), every).unseen
+        usable = self._usable(faults_of_cells(frames, self._layout))
+        return self._places(_calibrated(moving, frames), usable).unseen
 
     def _fit(self, frames: Frames, usable: Mask, thicker_mm: tuple[float, float] | None) -> Fitted:
         values = np.array([_calibrated(level(part), frames) for part in frames.gauge])

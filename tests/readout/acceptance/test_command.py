@@ -57,6 +57,23 @@ def arguments(gauge: Path, out: Path) -> list[str]:
     return ["accept", url, "--gauge", str(gauge), "--out", str(out), "--seconds", "1"]
 
 
+def test_an_emitter_that_is_not_plugged_in_gets_its_verdict(
+    gauge_file: Path, tmp_path: Path, bench: Bench, monkeypatch, capsys
+) -> None:
+    hands = Hands(monkeypatch, bench)
+    dark = np.tile([[0.0], [1.0]], (50, len(LAYOUT)))
+    hands._states = [dark] * 9
+    out = tmp_path / "out"
+    assert main(arguments(gauge_file, out)) == 1
+    assert len(hands.asked) == 9  # the step with the moving sheet three times
+    text = capsys.readouterr().out
+    assert text.count("once more: ") == 2
+    assert text.count("going on without: ") == 1
+    assert "of 255 in the empty grasp" in text, text
+    report = json.loads((out / "acceptance.json").read_text())
+    assert report["accepted"] is False
+
+
 @pytest.mark.slow
 def test_good_fingers_are_accepted_reported_and_calibrated(
     gauge_file: Path, tmp_path: Path, bench: Bench, monkeypatch, capsys

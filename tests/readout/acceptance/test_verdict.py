@@ -177,6 +177,18 @@ def test_a_sheet_that_does_not_move_is_not_accepted(bench: Bench, judge: Judge) 
     assert judge.unseen(frames.empty, frames.sheet, frames.moving) is None
 
 
+def test_the_sheet_need_not_be_seen_by_dead_cells(bench: Bench, judge: Judge) -> None:
+    frames = bench.frames()
+    dead = list(range(0, 32, 4))
+    empty, sheet, moving = (light.copy() for light in (frames.empty, frames.sheet, frames.moving))
+    for light in (empty, sheet, moving):
+        light[:, dead] = 0.0
+    assert judge.unseen(empty, sheet, moving) is None
+    verdict = judge(replace(frames, empty=empty, sheet=sheet, moving=moving))
+    assert not verdict.accepted
+    assert {cell for finding in verdict.findings for cell in finding.cells} >= set(dead)
+
+
 def test_another_design_is_refused(gauge: Gauge) -> None:
     with pytest.raises(GaugeError, match="the gauge is of design 0000"):
         Judge(published_layout(), replace(gauge, design_hash="0" * 64))

@@ -10,7 +10,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.design.encoding import canonical
 from lumitip_fab.design.making import MaskShift
 
-MODEL_VERSION = 2
+MODEL_VERSION = 3
 """Version of the model of built fingers and their estimates. Increase it with every change of
 `lumitip_fab.tolerance` that moves figures: it makes the stored shifts of masks invalid."""
 _LENGTH = 12
