@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from damages import cut_short, swap
+from damages import cut_short, edit, swap
 
 FIRST, SECOND = "generic", "jlcpcb"
 BOM = "bom.csv"
@@ -60,8 +60,14 @@ def board_gone(order: Path) -> None:
     (order.parent / "receiver.kicad_pcb").unlink()
 
 
+def part_out_of_kicads_lists(order: Path) -> None:
+    path = order.parent / "receiver.kicad_pcb"
+    edit(path, "(attr smd)", "(attr smd exclude_from_bom exclude_from_pos_files)")
+
+
 FOLDER_DAMAGES: dict[Callable[[Path], None], set[str]] = {
     table_beside: {"tables"},
+    part_out_of_kicads_lists: {"excluded"},
     table_gone: {"readable"},
     zip_short: {"readable"},
     zip_spoilt: {"readable"},

@@ -13,9 +13,7 @@ pytestmark = pytest.mark.slow
 
 AT_LEAST = 0.95
 LED = "15406085BA300"  # of the published sensor
-SPRINGS = "827-22-010-10-001101"  # of the published flange
 PULL_UPS = "YC164-FR-0716KL"  # arrays of 16 kOhm, whose number is not known
-NO_FLANGE = ("franka_hand", "wsg50")
 
 
 def lines(folder: Path, pattern: str) -> list[dict[str, str]]:
@@ -48,7 +46,7 @@ def test_lines_have_numbers(built: Callable[[str], Path], preset: str) -> None:
     assert len(named) >= AT_LEAST * len(generic)
     numbered = [r for r in of_lcsc if r["JLCPCB Part #"]]
     missing = [r["Manufacturer Part"] for r in of_lcsc if not r["JLCPCB Part #"]]
-    wanted = [LED] if preset in NO_FLANGE else [LED, SPRINGS]
+    wanted = [LED]
     wanted += [PULL_UPS] if any(r["Manufacturer Part"] == PULL_UPS for r in of_lcsc) else []
     assert sorted(missing) == wanted
     assert len({r["JLCPCB Part #"] for r in numbered}) == len(
@@ -63,4 +61,4 @@ def test_the_specification_counts_the_same_lines(built: Callable[[str], Path]) -
     bill = lines(out, "jlcpcb_*")
     numbered = sum(bool(row["JLCPCB Part #"]) for row in bill)
     assert rows[-1].computed.startswith(f"{len(bill)} of {len(bill)} lines, {numbered} with LCSC's")
-    assert "827-22-010-10-001101" in rows[-1].reason
+    assert LED in rows[-1].reason

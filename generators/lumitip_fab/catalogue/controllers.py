@@ -52,6 +52,9 @@ class Strip(Ordered, Entry):
     """Above the board."""
     stroke_mm: float = Field(default=0, ge=0, le=10)
     """Travel of spring contacts; 0 for others."""
+    hand_soldered: bool = False
+    """Whether it is soldered on by hand after the PCB fab has mounted the rest: no fab's bill of
+    materials or placement list has it."""
     shroud: Shroud | None = None
     """Shroud of a right-angle box header; none for others, whose body is over their contacts."""
     mate: Name | None = None

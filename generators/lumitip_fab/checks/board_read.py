@@ -185,6 +185,12 @@ class ReadBoard(Subject):
         """The group of a signal at the cable, by the place of its pad in the row."""
         return self.group("J1", self.signals.index(signal) + 1) if signal in self.signals else None
 
+    def assembled(self) -> set[str]:
+        """References of the parts on the board that a PCB fab is to mount: all that are bought but
+        those that the catalogue says are soldered on by hand."""
+        by_hand = {device.ref for device in self.components if device.hand_soldered}
+        return {part.ref for part in self.board.parts if part.bought} - by_hand
+
     def ordered(self, ref: str) -> tuple[str, str]:
         """Order number of a part and its number at LCSC from the catalogue, the latter empty where
         it is not known; a resistor's value is read from the board."""

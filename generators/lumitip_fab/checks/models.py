@@ -31,7 +31,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             continue
         lost, turned = [], []
         for part in read.board.parts:
-            if not part.terminals or "exclude_from_bom" in part.attributes:
+            if not part.terminals or not part.bought:
                 continue
             shape = known.get(part.footprint)
             path = _path(outputs, name, part.models)

@@ -163,7 +163,7 @@ def _soldered(read: ReadBoard, layer: str) -> BaseGeometry:
         [
             copper.area
             for part, t, copper in lands(read.board, layer)
-            if "exclude_from_bom" not in part.attributes and not t.drill_mm
+            if part.bought and not t.drill_mm
         ]
     )
 

@@ -23,7 +23,7 @@ def measure_tables(path: str, read: ReadBoard, fab: Fab, files: Files) -> Iterat
     """Bill of materials and placement list of a zip against the parts on the board."""
     name = read.name
     bom = _rows(files[f"{name}_bom.csv"], fab.bom)
-    mounted = {p.ref for p in read.board.parts if "exclude_from_bom" not in p.attributes}
+    mounted = read.assembled()
     refs = [ref for row in bom for ref in row["refs"].split(",")]
     wrong = sorted(mounted ^ set(refs)) + [ref for ref in set(refs) if refs.count(ref) > 1]
     wrong += [
@@ -44,6 +44,8 @@ def measure_tables(path: str, read: ReadBoard, fab: Fab, files: Files) -> Iterat
     ]
     wrong += [text for row in bom for text in _other_texts(read, row, row["refs"].split(","))]
     yield count("orders.bom", path, wrong, "parts")
+    other = [p.ref for p in read.board.parts if p.ref and _excluded(p) != (p.ref not in mounted)]
+    yield count("orders.excluded", path, other, "parts")
     rows = _rows(files[f"{name}_positions.csv"], fab.positions)
     placed = Counter(row["ref"] for row in rows)
     lost = sorted(mounted ^ placed.keys()) + [ref for ref, times in placed.items() if times > 1]
@@ -59,6 +61,14 @@ def measure_tables(path: str, read: ReadBoard, fab: Fab, files: Files) -> Iterat
     yield count("orders.sides", path, sides, "parts")
     turns = [_turned_by(read, row, part, fab) for row, part in known]
     yield Measurement("orders.turns", path, float(np.max(turns, initial=0.0)), 0, TURN_DEG, "°")
+
+
+def _excluded(part: Part) -> bool | None:
+    """Whether KiCad leaves a part out of its own bill of materials and placement list; none if out
+    of one of them alone."""
+    both = {"exclude_from_bom", "exclude_from_pos_files"}
+    found = both & part.attributes
+    return bool(found) if found in (set(), both) else None
 
 
 def _other_texts(read: ReadBoard, row: dict[str, str], refs: list[str]) -> Iterator[str]:

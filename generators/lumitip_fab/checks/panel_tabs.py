@@ -67,7 +67,7 @@ def _mounted(read: PanelBoard) -> BaseGeometry:
     """Bodies and pads of mounted parts."""
     shapes = footprints_of(read.single)
     found = []
-    for part in (p for p in read.board.parts if "exclude_from_bom" not in p.attributes):
+    for part in (p for p in read.board.parts if p.bought):
         device = as_it_lies(read, part, shapes)
         if device is None:
             raise ValueError(f"{part.ref} has the footprint {part.footprint}, which no part has")

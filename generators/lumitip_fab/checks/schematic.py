@@ -44,7 +44,9 @@ def _other_parts(sheet: Sheet, board: KicadBoard) -> Iterator[str]:
 
 def _other_fields(sheet: Sheet, read: ReadBoard) -> Iterator[str]:
     """Fields by which a part is ordered that board or catalogue have otherwise, and parts that are
-    left out."""
+    left out; parts that are in KiCad's bill of materials and not in the orders, or the other way
+    round."""
+    assembled = read.assembled()
     for symbol in sheet.symbols:
         drawn, part = dict(symbol.fields), read.parts.get(symbol.ref)
         placed = {} if part is None else dict(part.fields)
@@ -63,6 +65,8 @@ def _other_fields(sheet: Sheet, read: ReadBoard) -> Iterator[str]:
             yield f"{symbol.ref}: MPN {wanted['MPN']} on the board"
         if not symbol.placed:
             yield f"{symbol.ref}: left out"
+        if symbol.in_bom != (symbol.ref in assembled):
+            yield f"{symbol.ref}: {'in' if symbol.in_bom else 'not in'} KiCad's bill of materials"
 
 
 def _other_nets(sheet: Sheet, board: KicadBoard) -> Iterator[str]:

@@ -43,6 +43,7 @@ def mounted(
         side="front",
         nets=nets,
         pins=pins,
+        hand_soldered=isinstance(entry, Strip) and entry.hand_soldered,
     )
 
 

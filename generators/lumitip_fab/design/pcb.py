@@ -118,6 +118,13 @@ class Component:
     """Address of the maker's data sheet; empty where it is not known."""
     pins: tuple[str, ...] = ()
     """Name of each pad, in the order of the pads; empty where a part has no names."""
+    hand_soldered: bool = False
+    """Whether it is soldered on by hand after the PCB fab has mounted the rest."""
+
+    @property
+    def assembled(self) -> bool:
+        """Whether a PCB fab mounts it: no bare copper, and not soldered on by hand."""
+        return bool(self.part) and not self.hand_soldered
 
     @property
     def body_on_board(self) -> Box:

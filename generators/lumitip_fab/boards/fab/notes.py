@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from lumitip_fab.boards.fab.order import bom_rows, bought
+from lumitip_fab.boards.fab.order import assembled, bom_rows, bought
 from lumitip_fab.boards.model import BoardModel, Placement
 from lumitip_fab.boards.placed import pad_at, placed_pads
 from lumitip_fab.design import Fab, Flexible, Led, Panel, Photodetector
@@ -79,6 +79,7 @@ def assembly_note(board: Placement, fab: Fab) -> bytes:
         "",
         *(_flexible(board.flexible, stiffener) if board.flexible else ()),
         *((*_polarity(board, chip), *_others(board)) if chip else _behind(board)),
+        *_by_hand(board),
         *_ordering(board, fab),
         f"{first}, in mm as in the Gerber files, seen from the front:",
         *(_places(board, chip) if chip else _first_pads(board)),
@@ -122,15 +123,23 @@ def _others(board: Placement) -> Iterator[str]:
 
 
 def _first_pads(board: Placement) -> Iterator[str]:
-    for part in bought(board):
+    for part in assembled(board):
         x, y = pad_at(part, "1")
         yield f"{part.ref}  {x:.3f} {y:.3f}"
 
 
 def _behind(board: Placement) -> Iterator[str]:
-    behind = [part.ref for part in bought(board) if part.side == "back"]
+    behind = [part.ref for part in assembled(board) if part.side == "back"]
     if behind:
         yield f"ON THE BACK: {', '.join(behind)}. Everything else is on the front."
+        yield ""
+
+
+def _by_hand(board: Placement) -> Iterator[str]:
+    """Parts of the board that the PCB fab does not mount."""
+    parts = [f"{p.ref} ({p.manufacturer} {p.part})" for p in bought(board) if p.hand_soldered]
+    if parts:
+        yield passage(_TEXTS, "by_hand").format(parts=", ".join(parts))
         yield ""
 
 

@@ -19,8 +19,8 @@ def bill_of_materials(board: Placement, fab: Fab) -> bytes:
 
 
 def placement_list(board: Placement, fab: Fab) -> bytes:
-    """One row for each part; places are in the frame of the Gerber files."""
-    return _table(fab.positions, (_placed(part, fab) for part in bought(board)))
+    """One row for each part that is mounted; places are in the frame of the Gerber files."""
+    return _table(fab.positions, [_placed(part, fab) for part in assembled(board)])
 
 
 def bought(board: Placement) -> list[Component]:
@@ -28,10 +28,16 @@ def bought(board: Placement) -> list[Component]:
     return sorted((p for p in board.components if p.part), key=lambda p: _natural(p.ref))
 
 
+def assembled(board: Placement) -> list[Component]:
+    """The parts that the PCB fab mounts, in order of reference: those that are soldered on by hand
+    are not ordered from it."""
+    return [part for part in bought(board) if part.assembled]
+
+
 def bom_rows(board: Placement) -> Iterator[Row]:
     """The rows by field."""
     kinds: dict[tuple[str, ...], list[str]] = {}
-    for part in bought(board):
+    for part in assembled(board):
         key = (part.manufacturer, part.part, part.value, part.footprint.name, part.lcsc)
         kinds.setdefault(key, []).append(part.ref)
     for item, ((manufacturer, number, value, footprint, lcsc), refs) in enumerate(kinds.items(), 1):

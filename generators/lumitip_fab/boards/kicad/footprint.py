@@ -240,7 +240,7 @@ def _ordering(part: PlacedComponent) -> tuple[sexpr.Node, ...]:
 
 def _attributes(component: PlacedComponent) -> tuple[str, ...]:
     attributes = ["through_hole" if any(p.drill_mm for p in component.footprint.pads) else "smd"]
-    if not component.part:
+    if not component.assembled:
         attributes += ["exclude_from_pos_files", "exclude_from_bom"]
     if component.kind == "fiducial":
         attributes.append("board_only")

@@ -42,7 +42,7 @@ def panel_model(panel: Panel, model: BoardModel, rules: Rules) -> BoardModel:
     """
     board, tabs = model.placement, tab_places(panel, model)
     copies = [_Copy(model, number, at) for number, at in enumerate(panel.copies, start=1)]
-    sides = tuple(s for s in SIDES if any(p.part and p.side == s for p in board.components))
+    sides = tuple(s for s in SIDES if any(p.assembled and p.side == s for p in board.components))
     limits = panel.rules
     routed = [
         (copies[0].at(at, to), limits.bite_mm)

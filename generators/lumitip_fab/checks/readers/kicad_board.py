@@ -85,6 +85,11 @@ class Part:
     fields: tuple[tuple[str, str], ...] = ()
     """Its properties, by name."""
 
+    @property
+    def bought(self) -> bool:
+        """Whether it is no bare copper: it is in bills of materials, or has an order number."""
+        return "exclude_from_bom" not in self.attributes or "MPN" in dict(self.fields)
+
 
 @dataclass(frozen=True)
 class Ply:

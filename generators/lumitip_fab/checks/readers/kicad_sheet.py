@@ -34,6 +34,8 @@ class Symbol:
     """Everything that is written of it, by name."""
     placed: bool
     """Whether it is not marked as left out."""
+    in_bom: bool
+    """Whether KiCad's own bill of materials has it."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,8 @@ def read_sheet(path: Path) -> Sheet:
         if unit == 1:
             placed_at_all = words(child(symbol, "dnp")) in ([], ["no"])
             own = fields["Reference"], fields["Value"], footprint
-            symbols.append(Symbol(*own, tuple(fields.items()), placed_at_all))
+            in_bom = words(child(symbol, "in_bom")) in ([], ["yes"])
+            symbols.append(Symbol(*own, tuple(fields.items()), placed_at_all, in_bom))
         pins += [(f"{fields['Reference']}.{pin.number}", pin.at) for pin in placed]
     return Sheet(tuple(symbols), _nets(joined, names, pins))
 

@@ -95,7 +95,7 @@ class _Writer:
         symbol.lib_id.value = f"{symbols.LIBRARY}:{drawn.symbol}"
         symbol.at.value = [drawn.x_mm, drawn.y_mm, drawn.angle_deg]
         symbol.unit.value = drawn.unit
-        symbol.in_bom.value = part is None or bool(part.part)
+        symbol.in_bom.value = part is None or part.assembled
         symbol.uuid.value = uuid
         fields = _field_texts(drawn, part)
         for field in symbol.property:
