@@ -5,10 +5,13 @@ from pathlib import Path
 
 import pytest
 
+from damages import excerpt
 from lumitip_fab.checks import schematic
 from lumitip_fab.design.encoding import read_design
 
 pytestmark = pytest.mark.slow
+
+CHECKS = ["schematic.parts", "schematic.fields", "schematic.pins", "schematic.nets"]
 
 
 def _failed(out: Path) -> dict[str, str]:
@@ -21,7 +24,7 @@ def _failed(out: Path) -> dict[str, str]:
 def test_schematics_and_boards_agree(boards: Callable[[str], Path], preset: str) -> None:
     out = boards(preset)
     found = list(schematic.measure(out, read_design(out / "design.json")))
-    assert [m.check for m in found] == ["schematic.parts", "schematic.fields", "schematic.nets"] * 4
+    assert [m.check for m in found] == CHECKS * 4
     assert all(m.passed for m in found), [m.note for m in found]
 
 
@@ -52,6 +55,51 @@ def test_a_damaged_schematic_fails(
     assert old in text
     file.write_text(text.replace(old, new, 1), encoding="utf-8")
     assert check in _failed(damaged_boards)
+
+
+def _change_pin(file: Path, pin: str, old: str, new: str) -> None:
+    """Replace a word of the first pin of a name in a schematic's own library."""
+    text = file.read_text(encoding="utf-8")
+    last = text.index(pin) + len(pin)
+    first = text.rindex("(pin ", 0, last)
+    assert old in text[first:last]
+    file.write_text(text[:first] + text[first:last].replace(old, new) + text[last:], "utf-8")
+
+
+@pytest.mark.parametrize(
+    ("board", "pin", "old", "new"),
+    [
+        ("receiver", '(name "VCC"', "(pin power_in", "(pin passive"),
+        ("receiver", '(name "Y3"', '"Y3"', '"Y4"'),
+        ("receiver", '(name "S1"', "(pin input", "(pin passive"),
+        ("flange", '(name "EN"', "(pin input", "(pin passive"),
+        ("flange", '(name "FB"', '"FB"', '"EN"'),
+    ],
+)
+def test_a_pin_of_another_type_or_name_fails(
+    damaged_boards: Path, board: str, pin: str, old: str, new: str
+) -> None:
+    _change_pin(damaged_boards / f"boards/{board}/{board}.kicad_sch", pin, old, new)
+    assert _failed(damaged_boards).keys() == {"pins"}
+
+
+@pytest.mark.parametrize(
+    ("pin", "old", "new"),
+    [
+        ('(name "SET"', "(pin input", "(pin passive"),
+        ('(name "OUT"', "(pin output", "(pin passive"),
+        ('(name "IN"', "(pin power_in", "(pin bidirectional"),
+        ('(name "SET"', '"SET"', '"OUT"'),
+    ],
+)
+def test_a_pin_of_a_current_source_fails(
+    boards: Callable[[str], Path], tmp_path: Path, pin: str, old: str, new: str
+) -> None:
+    """Of the emitter alone: the other boards are not there."""
+    out = excerpt(boards("fingertip"), tmp_path, "boards/emitter")
+    assert _failed(out).keys() == {"readable"}
+    _change_pin(out / "boards/emitter/emitter.kicad_sch", pin, old, new)
+    assert _failed(out).keys() == {"readable", "pins"}
 
 
 def test_a_cut_wire_fails(damaged_boards: Path) -> None:

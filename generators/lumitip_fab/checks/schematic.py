@@ -8,6 +8,7 @@ from lumitip_fab.checks.board_read import ReadBoard, names_of, read_any
 from lumitip_fab.checks.readers.kicad_board import KicadBoard
 from lumitip_fab.checks.readers.kicad_sheet import Sheet, read_sheet
 from lumitip_fab.checks.result import Measurement, count, unreadable
+from lumitip_fab.checks.schematic_pins import other_pins
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
@@ -26,6 +27,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             continue
         yield count("schematic.parts", subject, list(_other_parts(sheet, read.board)), "parts")
         yield count("schematic.fields", subject, list(_other_fields(sheet, read)), "fields")
+        yield count("schematic.pins", subject, list(other_pins(sheet, read)), "pins")
         yield count("schematic.nets", subject, list(_other_nets(sheet, read.board)), "nets")
 
 

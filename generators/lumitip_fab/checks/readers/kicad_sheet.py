@@ -24,6 +24,16 @@ Point = tuple[int, int]
 
 
 @dataclass(frozen=True)
+class Pin:
+    """A pin of a symbol."""
+
+    number: str
+    name: str
+    kind: str
+    at: Point
+
+
+@dataclass(frozen=True)
 class Symbol:
     """A part."""
 
@@ -36,6 +46,8 @@ class Symbol:
     """Whether it is not marked as left out."""
     in_bom: bool
     """Whether KiCad's own bill of materials has it."""
+    pins: tuple[Pin, ...]
+    """Those of its first unit, in their places."""
 
 
 @dataclass(frozen=True)
@@ -45,14 +57,6 @@ class Sheet:
     symbols: tuple[Symbol, ...]
     nets: dict[str, set[str]]
     """Pins on each net: `{"GND": {"Q1.2", …}, …}`; nets without a name are called `"?"`."""
-
-
-@dataclass(frozen=True)
-class _Pin:
-    number: str
-    name: str
-    kind: str
-    at: Point
 
 
 def read_sheet(path: Path) -> Sheet:
@@ -85,7 +89,8 @@ def read_sheet(path: Path) -> Sheet:
             placed_at_all = words(child(symbol, "dnp")) in ([], ["no"])
             own = fields["Reference"], fields["Value"], footprint
             in_bom = words(child(symbol, "in_bom")) in ([], ["yes"])
-            symbols.append(Symbol(*own, tuple(fields.items()), placed_at_all, in_bom))
+            texts = tuple(fields.items())
+            symbols.append(Symbol(*own, texts, placed_at_all, in_bom, tuple(placed)))
         pins += [(f"{fields['Reference']}.{pin.number}", pin.at) for pin in placed]
     return Sheet(tuple(symbols), _nets(joined, names, pins))
 
@@ -155,7 +160,7 @@ def _pins(shape: Node, unit: int) -> Iterator[Node]:
             yield from children(drawing, "pin")
 
 
-def _placed(pin: Node, symbol: Node) -> _Pin:
+def _placed(pin: Node, symbol: Node) -> Pin:
     """A pin of a symbol on the sheet; libraries are y up, and turns counter-clockwise."""
     x, y = numbers(child(pin, "at"))[:2]
     left, top, angle = numbers(child(symbol, "at"))
@@ -163,7 +168,7 @@ def _placed(pin: Node, symbol: Node) -> _Pin:
     cos, sin = round(math.cos(turn)), round(math.sin(turn))
     number, name = (words(child(pin, key))[0] for key in ("number", "name"))
     at = _point(left + x * cos - y * sin, top - x * sin - y * cos)
-    return _Pin(number, name, words(pin)[0], at)
+    return Pin(number, name, words(pin)[0], at)
 
 
 def _point(x: float, y: float) -> Point:

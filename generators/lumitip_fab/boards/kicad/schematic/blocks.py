@@ -163,13 +163,16 @@ SOURCE_MM = 41.91
 
 
 def source_symbol(part: Component) -> Node:
-    """A box with IN to the left, OUT and SET to the right; leads of one name are one pin."""
+    """A box with IN to the left, OUT and SET to the right. Leads of one name are one pin: those
+    after the first are hidden, and passive, as KiCad asks of pins on top of each other."""
     reach = _SOURCE_HALF_MM + symbols.PIN_MM
     places = {"IN": (-reach, 0.0, 0), "OUT": (reach, 0.0, 180), "SET": (reach, -_SET_MM, 180)}
     pins, names = [], set()
     for number, _ in part.nets:
         name = part.pins[int(number) - 1]
-        pins.append(symbols.pin(number, *places[name], symbols.PIN_MM, name, hide=name in names))
+        hide = name in names
+        kind = "passive" if hide else shapes.pin_type(part, name)
+        pins.append(symbols.pin(number, *places[name], symbols.PIN_MM, name, kind, hide))
         names.add(name)
     body = symbols.box(
         -_SOURCE_HALF_MM, _SET_MM / 2, _SOURCE_HALF_MM, -_SET_MM * 1.5, fill="background"
