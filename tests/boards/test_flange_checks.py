@@ -88,6 +88,22 @@ def dot_lost(text: str) -> str:
     return in_part(text, "U1", r'\n[^\n]*\(fp_line [^\n]*"F.SilkS"\) \(width 0\.3\)[^\n]*', "")
 
 
+def references_exchanged(text: str) -> str:
+    return (
+        once(text, r'\(gr_text "R1"', '(gr_text "R?"')
+        .replace('(gr_text "R2"', '(gr_text "R1"')
+        .replace('(gr_text "R?"', '(gr_text "R2"')
+    )
+
+
+def reference_under_a_body(text: str) -> str:
+    """The coil's reference in the middle of the coil."""
+    at = text.index('(fp_text reference "L1"')
+    place = re.search(r"\(at (\S+) (\S+?)[ )]", text[text.rindex("\n  (footprint", 0, at) :])
+    assert place
+    return once(text, r'(\(gr_text "L1"\s+\(at )\S+ [^ )]+', rf"\g<1>{place[1]} {place[2]}")
+
+
 DAMAGES: dict[Damage, set[str]] = {
     resistor_small: {"plug_in_voltage", "plug_in_current"},
     resistor_without_a_value: {"plug_in_voltage", "plug_in_current", "plug_in_surge"},
@@ -102,6 +118,8 @@ DAMAGES: dict[Damage, set[str]] = {
         "joined",
     },
     dot_lost: {"silk_marks"},
+    references_exchanged: {"silk_bodies"},
+    reference_under_a_body: {"silk_bodies"},
     contacts_in_front: {"lands"},
     # Its pads lie in the ground pour.
     capacitor_far: {

@@ -23,6 +23,7 @@ from lumitip_fab.checks.board_probes import measure_probes
 from lumitip_fab.checks.board_protection import measure_protection
 from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, placed, read_any
 from lumitip_fab.checks.board_silk import measure_labels, measure_prints, measure_targets
+from lumitip_fab.checks.board_silk_bodies import measure_bodies
 from lumitip_fab.checks.board_strings import measure_strings, measure_switch
 from lumitip_fab.checks.board_ties import measure_ties
 from lumitip_fab.checks.plug_in import measure_plug_in
@@ -250,6 +251,7 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     board_copper.measure_keep_outs,
     measure_prints,
     measure_labels,
+    measure_bodies,
     measure_cell_prints,
     measure_targets,
     measure_flexible,

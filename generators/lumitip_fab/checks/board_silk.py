@@ -27,7 +27,7 @@ _FIRST = "1"
 
 
 @dataclass(frozen=True)
-class _Contact:
+class Contact:
     """A pad where someone plugs, solders or probes."""
 
     pad: str
@@ -54,7 +54,7 @@ def measure_prints(read: ReadBoard) -> Iterator[Measurement]:
 def measure_labels(read: ReadBoard) -> Iterator[Measurement]:
     """The name beside each contact: of all that is printed but references, the nearest, by where
     the word ends; and that it stands nearest to a contact of its name."""
-    contacts = list(_contacts(read))
+    contacts = list(contacts_of(read))
     if not contacts:
         return
     names = {contact.name for contact in contacts} | set(read.signals)
@@ -86,20 +86,20 @@ def measure_targets(read: ReadBoard) -> Iterator[Measurement]:
     yield read.count("references", [f"{ref} twice" for ref, n in count.items() if n > 1], "parts")
 
 
-def _contacts(read: ReadBoard) -> Iterator[_Contact]:
+def contacts_of(read: ReadBoard) -> Iterator[Contact]:
     """Wire pads, test points, and rows of contacts with names."""
     for number, signal in enumerate(read.signals, start=1):
-        yield _Contact(f"J1.{number}", _pad_at(read, "J1", number), True, signal)
+        yield Contact(f"J1.{number}", _pad_at(read, "J1", number), True, signal)
         for ref in (ref for ref in read.parts if ref.startswith("TP")):
             if read.wire(signal) == read.group(ref, 1) is not None:
                 front = read.parts[ref].front
-                yield _Contact(f"{ref}.1", _pad_at(read, ref, 1), front, signal)
+                yield Contact(f"{ref}.1", _pad_at(read, ref, 1), front, signal)
     for device in (d for d in read.components if d.kind == "test point"):
         front = device.ref not in read.parts or read.parts[device.ref].front
-        yield _Contact(f"{device.ref}.1", _pad_at(read, device.ref, 1), front, device.value)
+        yield Contact(f"{device.ref}.1", _pad_at(read, device.ref, 1), front, device.value)
     for device in (d for d in read.components if d.contacts):
         for land, name in zip(device.footprint.pads, device.pins, strict=False):
-            yield _Contact(f"{device.ref}.{land.number}", placed(device, land), True, name)
+            yield Contact(f"{device.ref}.{land.number}", placed(device, land), True, name)
 
 
 def _pad_at(read: ReadBoard, ref: str, number: int) -> Point:
@@ -110,9 +110,9 @@ def _pad_at(read: ReadBoard, ref: str, number: int) -> Point:
     return float(x), float(y)
 
 
-def _misread(read: ReadBoard, contacts: list[_Contact], words: list[Word]) -> Iterator[str]:
+def _misread(read: ReadBoard, contacts: list[Contact], words: list[Word]) -> Iterator[str]:
     """Contacts beside which another name is nearest, or none is near."""
-    lines = [_line(read, word) for word in words]
+    lines = [middle_line(read, word) for word in words]
     for contact in contacts:
         apart = shapely.distance(lines, shapely.Point(contact.at))
         nearest = int(apart.argmin()) if apart.size else -1
@@ -120,7 +120,7 @@ def _misread(read: ReadBoard, contacts: list[_Contact], words: list[Word]) -> It
             yield f"{contact.pad} is not called {contact.name}"
 
 
-def _misleading(read: ReadBoard, contacts: list[_Contact], words: list[Word]) -> Iterator[str]:
+def _misleading(read: ReadBoard, contacts: list[Contact], words: list[Word]) -> Iterator[str]:
     """Names that stand nearest to a contact of another name, or far from all."""
     for word in words:
         x, y = read.sensor([word.at])[0]
@@ -130,7 +130,7 @@ def _misleading(read: ReadBoard, contacts: list[_Contact], words: list[Word]) ->
             yield f"{word.text} stands at {nearest.pad if nearest else 'no contact'}"
 
 
-def _line(read: ReadBoard, word: Word) -> shapely.LineString:
+def middle_line(read: ReadBoard, word: Word) -> shapely.LineString:
     """Along the middle of a word, from its first letter to its last."""
     turn, half = math.radians(word.angle_deg), LETTER * word.height_mm * len(word.text) / 2
     along = half * np.array([math.cos(turn), -math.sin(turn)])  # the page's y points down

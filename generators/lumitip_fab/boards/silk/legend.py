@@ -44,6 +44,9 @@ def with_legend(
     components = print_references(page)
     for part in components:
         draw_shroud(page, part)
+    if not board.cells:
+        for side in SIDES:
+            page.sides[side].take(*page.bodies[side].over.values())
     # The front of a board with cells has room along its edges alone.
     arrows = [
         _along_the_edges(page) if board.cells and side == "front" else _block(page, side, title_at)

@@ -10,7 +10,7 @@ from shapely import LineString
 
 from lumitip_fab.boards.model import MASK_MM, SIDES, PlacedComponent, Text
 from lumitip_fab.boards.placed import placed, placed_pads
-from lumitip_fab.boards.silk.page import DOWN, LEFT, RIGHT, UP, Page, Way
+from lumitip_fab.boards.silk.page import DOWN, LEFT, RIGHT, UP, Page, Way, extent
 from lumitip_fab.design import Point, Shroud, Side
 
 _GAP_MM = 0.3  # between names in a row, so that they are read apart
@@ -120,12 +120,19 @@ def _at_contacts(page: Page, part: PlacedComponent) -> None:
         outward = math.copysign(1.0, rise) if pad.pad.y_mm else inward
         ways = (UP, DOWN) if outward > 0 else (DOWN, UP)
         at, half = (pad.x_mm, pad.y_mm), max(pad.pad.height_mm / 2, drawn - abs(pad.pad.y_mm))
-        lying = [
-            _moved(page.beside(name, at, (half, half), way, _AWAY_MM), aside)
-            for aside, way in product(_ASIDE_MM, ways)
-        ]
-        upright = [page.beside(name, at, (half, half), way, _AWAY_MM, upright=True) for way in ways]
-        page.require(repr(f"{part.ref} {name}"), lying if flat and mostly else [*upright, *lying])
+        lying, upright = (
+            [
+                _moved(page.beside(name, at, (half, half), way, _AWAY_MM, turned), aside)
+                for aside, way in product(_ASIDE_MM, ways)
+            ]
+            for turned in (False, True)
+        )
+        straight, slid = upright[: len(ways)], upright[len(ways) :]
+        first = [*lying, *straight] if flat and mostly else [*straight, *lying]
+        places = [*first, *slid]
+        bodies = page.bodies["front"]
+        seen = [t for t in places if not bodies.hide(extent(t, "front"), but=part.ref)]
+        page.require(repr(f"{part.ref} {name}"), [*seen, *places])
 
 
 def _at_probe(page: Page, part: PlacedComponent) -> None:

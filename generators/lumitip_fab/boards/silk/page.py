@@ -10,8 +10,9 @@ import shapely
 from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.boards.model import Placement, Stroke, Text, opening_mm
+from lumitip_fab.boards.model import SIDES, Placement, Stroke, Text, opening_mm
 from lumitip_fab.boards.placed import placed, placed_pads
+from lumitip_fab.boards.silk.bodies import Bodies
 from lumitip_fab.boards.silk.strokes import text_strokes, upright
 from lumitip_fab.design import Box, Point, Rules, Side
 from lumitip_fab.errors import BuildError
@@ -126,6 +127,7 @@ class Page:
             "front": Clear.of(board, "front", gap, line),
             "back": Clear.of(board, "back", gap, line),
         }
+        self.bodies = {side: Bodies(board, side) for side in SIDES}
         self.strokes: list[tuple[Side, Stroke]] = []
         self.texts: list[tuple[Side, Text]] = []
         self.lost: list[str] = []

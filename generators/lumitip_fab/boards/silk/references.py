@@ -1,9 +1,10 @@
 """References of parts on the silkscreen, and the outlines of the cells that they stand in.
 
-A board without cells has the references of all its parts. On one with cells, parts elsewhere have
-theirs where there is room. At the cells there are all of them, for which the outlines give way if
-need be, or, where that is too narrow, those at the ends of each column: cells are counted from the
-tip.
+A board without cells has the references of its parts, each nearer to its part than to any other and
+under no body; one that finds no such place is left out, as assembly drawings have them all. On one
+with cells, parts elsewhere have theirs where there is room. At the cells there are all of them, for
+which the outlines give way if need be, or, where that is too narrow, those at the ends of each
+column: cells are counted from the tip.
 """
 
 import dataclasses
@@ -17,13 +18,14 @@ from shapely import LineString
 
 from lumitip_fab.boards.model import AT_CELLS, PlacedComponent, Text
 from lumitip_fab.boards.placed import courtyard
-from lumitip_fab.boards.silk.page import DOWN, LEFT, RIGHT, UP, Clear, Page, extent
+from lumitip_fab.boards.silk.page import DOWN, LEFT, RIGHT, UP, Clear, Page, Way, extent
 from lumitip_fab.design import Box, Point, Side
 
 _APART_MM = 0.1  # more than the least gap round references, so that they do not run together
 _FREE_MM = 0.2  # the same on a board without cells
 _REF_MM, _AWAY_MM = 1.0, 0.4  # height there, and from a part to its reference
 _STEP_MM = 0.1
+_ALONG = (0.0, 0.3, -0.3, 0.6, -0.6, 1.0, -1.0)  # places along a part's side, of half of it
 _BEYOND_MM = 2.5  # farthest end of a column's reference from the column
 _SHOWN = ("multiplexer", "current source", "switch", "resistor", "resistor array", "capacitor")
 _Places = dict[str, Text]
@@ -38,8 +40,16 @@ def print_references(page: Page) -> tuple[PlacedComponent, ...]:
     for part in components:
         if part.kind not in ("fiducial", "test point"):  # a test point has the name of its net
             height_mm = _height_mm(page, part)
+            bodies = page.bodies[part.side]
             places = _round(page, part.ref, courtyard(part), height_mm)
-            page.require(repr(part.ref), places, part.side, _FREE_MM if height_mm else 0.0)
+            for apart_mm in (_FREE_MM, 0.0) if height_mm else (0.0,):
+                seen = (
+                    text
+                    for text in places
+                    if not bodies.hide(extent(text, part.side)) and not bodies.misleads(text)
+                )
+                if page.first_free(part.side, seen, apart_mm):
+                    break
     return components
 
 
@@ -63,11 +73,19 @@ def _round(page: Page, ref: str, yard: Box, height_mm: float) -> list[Text]:
         turns = (*turns[4:], *turns[:4])
     away = _AWAY_MM if height_mm else _AWAY_MM / 2
     return [
-        page.beside(ref, *_rectangle(yard), way, away + farther, upright, high)
+        _slid(page.beside(ref, *_rectangle(yard), way, away + farther, upright, high), way, yard, s)
         for high in (height_mm, 0.0)
-        for farther in (0.0, 1.0, 2.0, 3.0)
+        for farther in (0.0, 0.5, 1.0, 2.0, 3.0)
+        for s in _ALONG
         for way, upright in turns
     ]
+
+
+def _slid(text: Text, way: Way, yard: Box, share: float) -> Text:
+    """A text beside a part moved along its side, by a share of half the side."""
+    if way[0]:
+        return dataclasses.replace(text, y_mm=text.y_mm + share * yard.length_mm / 2)
+    return dataclasses.replace(text, x_mm=text.x_mm + share * yard.width_mm / 2)
 
 
 def _rectangle(yard: Box) -> tuple[Point, Point]:

@@ -10,6 +10,7 @@ from lumitip_fab.checks.readers import kicad_shapes as shapes
 from lumitip_fab.checks.readers.kicad_shapes import Node, child, children, numbers, words
 
 _SIDES = {"F.SilkS": True, "F.Silkscreen": True, "B.SilkS": False, "B.Silkscreen": False}
+_BODY = {"F.Fab": True, "B.Fab": False}
 _DRAWN = ("line", "rect", "circle", "arc", "poly")
 _NOWHERE = shapes.Place((0.0, 0.0), 0.0)
 
@@ -48,17 +49,21 @@ class Silk:
 
     lines: tuple[Line, ...]
     words: tuple[Word, ...]
+    bodies: dict[str, list[BaseGeometry]]
+    """Outlines on the assembly drawing, by part."""
 
 
 def silk(root: Node) -> Silk:
     """The silkscreen of a board."""
     lines = [*_lines(root, "gr", "", _NOWHERE)]
     texts = [*_words(children(root, "gr_text"), "", _NOWHERE)]
+    bodies: dict[str, list[BaseGeometry]] = {}
     for part in children(root, "footprint", "module"):
         ref, place = _reference(part), shapes.Place.of(part)
         lines += _lines(part, "fp", ref, place)
         texts += _words(children(part, "fp_text", "property"), ref, place)
-    return Silk(tuple(lines), tuple(texts))
+        bodies[ref] = [line.path for line in _lines(part, "fp", ref, place, _BODY)]
+    return Silk(tuple(lines), tuple(texts), bodies)
 
 
 def _reference(part: Node) -> str:
@@ -68,14 +73,17 @@ def _reference(part: Node) -> str:
     return ""
 
 
-def _side(node: Node) -> bool | None:
-    """Whether something is on the front's silkscreen or on the back's; none of other layers."""
-    return _SIDES.get((words(child(node, "layer")) or [""])[0])
+def _side(node: Node, sides: dict[str, bool] = _SIDES) -> bool | None:
+    """Whether something is on the front's layer or on the back's, by default of the silkscreen;
+    none of other layers."""
+    return sides.get((words(child(node, "layer")) or [""])[0])
 
 
-def _lines(owner: Node, kind: str, ref: str, place: shapes.Place) -> Iterator[Line]:
+def _lines(
+    owner: Node, kind: str, ref: str, place: shapes.Place, sides: dict[str, bool] = _SIDES
+) -> Iterator[Line]:
     for node in children(owner, *(f"{kind}_{shape}" for shape in _DRAWN)):
-        if (front := _side(node)) is None:
+        if (front := _side(node, sides)) is None:
             continue
         path, area = (_at(place, s) for s in (shapes.outline(node), shapes.inked(node)))
         pen = numbers(child(node, "width")) or numbers(child(child(node, "stroke") or [], "width"))
