@@ -119,6 +119,10 @@ def note_without_a_part(files: Files) -> None:
     edit(files, "assembly.txt", rb"Q5  .*\n", b"")
 
 
+def note_of_an_assumed_rotation(files: Files) -> None:
+    edit(files, "assembly.txt", b"\n\n", b"\n\nROTATION ASSUMED: U1. Compare.\n\n")
+
+
 def thickness_of_the_fabrication_note(files: Files) -> None:
     edit(files, "fabrication.txt", b"Thickness: 1.6 mm", b"Thickness: 1 mm")
 
@@ -182,6 +186,7 @@ FIRST_DAMAGES: dict[Damage, set[str]] = {
     note_of_a_place: {"note"},
     note_without_a_figure: {"note"},
     note_without_a_part: {"note"},
+    note_of_an_assumed_rotation: {"assumed"},
     thickness_of_the_fabrication_note: {"fabrication"},
     size_of_the_fabrication_note: {"fabrication"},
     track_of_the_fabrication_note: {"fabrication"},

@@ -90,9 +90,9 @@ def dot_lost(text: str) -> str:
 
 def references_exchanged(text: str) -> str:
     return (
-        once(text, r'\(gr_text "R1"', '(gr_text "R?"')
-        .replace('(gr_text "R2"', '(gr_text "R1"')
-        .replace('(gr_text "R?"', '(gr_text "R2"')
+        once(text, r'\(gr_text "C2"', '(gr_text "R?"')
+        .replace('(gr_text "C3"', '(gr_text "C2"')
+        .replace('(gr_text "R?"', '(gr_text "C3"')
     )
 
 

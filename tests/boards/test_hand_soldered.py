@@ -77,3 +77,11 @@ def test_a_board_whose_own_outputs_would_have_them_is_seen(
 def test_a_schematic_whose_own_outputs_would_have_them_is_seen(damaged_boards: Path) -> None:
     edit(damaged_boards / SCHEMATIC, "(in_bom no)", "(in_bom yes)")
     assert failing(damaged_boards, "schematic") == {"fields"}
+
+
+def test_a_note_without_the_parts_of_assumed_rotation_is_seen(damaged_boards: Path) -> None:
+    def damage(files: Files) -> None:
+        files[NOTE] = files[NOTE].replace(b"ROTATION ASSUMED: F1, ", b"ROTATION ASSUMED: ")
+
+    rezip(damaged_boards / ORDER / "generic_flange.zip", damage)
+    assert failing(damaged_boards, "orders", "flange") == {"assumed"}

@@ -107,6 +107,9 @@ class Fab(Entry):
     """Direction in which the angle of a part on the back is counted."""
     rotations: Mapping[str, float]
     """Offset of the angle (degrees) of footprints, by the beginning of their name."""
+    rotations_assumed: tuple[str, ...] = ()
+    """Beginnings in `rotations` whose offset is assumed: the assembly note names these parts, and
+    those that no beginning fits."""
 
     @model_validator(mode="after")
     def _layers_whole(self) -> Self:
@@ -115,6 +118,15 @@ class Fab(Entry):
             raise ValueError(f"layers has no {', '.join(missing)}; each is needed")
         if len(set(self.layers.values())) < len(self.layers):
             raise ValueError("layers has the same ending twice; each layer needs its own")
+        return self
+
+    @model_validator(mode="after")
+    def _assumes_what_it_has(self) -> Self:
+        unknown = sorted(set(self.rotations_assumed) - set(self.rotations))
+        if unknown:
+            raise ValueError(
+                f"rotations_assumed has {', '.join(unknown)}, which rotations has not. Add it there"
+            )
         return self
 
 

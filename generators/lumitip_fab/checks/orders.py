@@ -77,6 +77,7 @@ def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurem
             note, made = (files[f"{name}_{n}.txt"].decode() for n in ("assembly", "fabrication"))
             wrong = _misled(read, read.finger, note) if read.finger else _misplaced(read, note)
             yield count("orders.note", path, list(wrong), "parts")
+            yield count("orders.assumed", path, _unsure(read, fab, note), "parts")
             yield count("orders.fabrication", path, list(_misordered(read, made)), "figures")
             if read.finger:
                 stops = list(_unstopped(read, read.finger, files))
@@ -108,6 +109,20 @@ def _misled(read: ReadBoard, finger: Finger, note: str) -> Iterator[str]:
         ends = [[float(row["x1"]), float(row["y1"])], [float(row["x2"]), float(row["y2"])]]
         if not np.abs(wanted - ends).max() <= PLACE_MM:
             yield part.ref
+
+
+def _unsure(read: ReadBoard, fab: Fab, note: str) -> list[str]:
+    """Parts that are turned by an assumed angle, or by none that is known, and that the note does
+    not name as such, or the other way round."""
+    row = re.search(r"^ROTATION ASSUMED: (.+?)\.", note, re.MULTILINE)
+    named = set(row[1].split(", ")) if row else set()
+    unsure = set()
+    for ref in read.assembled():
+        footprint = read.parts[ref].footprint
+        fits = [start for start, _ in fab.rotations if footprint.startswith(start)]
+        if max(fits, key=len, default="") in ("", *fab.rotations_assumed):
+            unsure.add(ref)
+    return sorted(named ^ unsure)
 
 
 def _misordered(read: ReadBoard, note: str) -> Iterator[str]:

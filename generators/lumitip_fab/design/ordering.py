@@ -25,6 +25,8 @@ class Fab:
     in KiCad."""
     rotations: tuple[tuple[str, float], ...]
     """Offset of the angle (degrees) of footprints, by the beginning of their name."""
+    rotations_assumed: tuple[str, ...]
+    """Beginnings whose offset is assumed."""
     remark: str
     """Remark on ordering there; may be empty."""
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from lumitip_fab.boards.fab.order import assembled, bom_rows, bought
+from lumitip_fab.boards.fab.order import assembled, bom_rows, bought, turned_by_assumption
 from lumitip_fab.boards.model import BoardModel, Placement
 from lumitip_fab.boards.placed import pad_at, placed_pads
 from lumitip_fab.design import Fab, Flexible, Led, Panel, Photodetector
@@ -80,6 +80,7 @@ def assembly_note(board: Placement, fab: Fab) -> bytes:
         *(_flexible(board.flexible, stiffener) if board.flexible else ()),
         *((*_polarity(board, chip), *_others(board)) if chip else _behind(board)),
         *_by_hand(board),
+        *_assumed(board, fab),
         *_ordering(board, fab),
         f"{first}, in mm as in the Gerber files, seen from the front:",
         *(_places(board, chip) if chip else _first_pads(board)),
@@ -140,6 +141,14 @@ def _by_hand(board: Placement) -> Iterator[str]:
     parts = [f"{p.ref} ({p.manufacturer} {p.part})" for p in bought(board) if p.hand_soldered]
     if parts:
         yield passage(_TEXTS, "by_hand").format(parts=", ".join(parts))
+        yield ""
+
+
+def _assumed(board: Placement, fab: Fab) -> Iterator[str]:
+    """Parts whose angle in the placement list is assumed."""
+    refs = [part.ref for part in assembled(board) if turned_by_assumption(part, fab)]
+    if refs:
+        yield passage(_TEXTS, "turned").format(refs=", ".join(refs))
         yield ""
 
 

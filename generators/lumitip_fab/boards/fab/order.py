@@ -55,13 +55,23 @@ def bom_rows(board: Placement) -> Iterator[Row]:
 
 def angle_at(part: Component, fab: Fab) -> float:
     """The angle (degrees, 0 up to 360) by which a PCB fab turns a part."""
-    name = part.footprint.name
-    fitting = [(start, turn) for start, turn in fab.rotations if name.startswith(start)]
-    turn = max(fitting, key=lambda each: len(each[0]))[1] if fitting else 0.0
+    _, turn = _rotation(part, fab)
     angle = part.angle_deg
     if part.side == "back":
         angle = -angle if fab.back_from_behind else angle + 180.0
     return (angle + turn) % 360.0
+
+
+def turned_by_assumption(part: Component, fab: Fab) -> bool:
+    """Whether the offset of a part's angle is assumed, or no offset is known for its footprint."""
+    start, _ = _rotation(part, fab)
+    return not start or start in fab.rotations_assumed
+
+
+def _rotation(part: Component, fab: Fab) -> tuple[str, float]:
+    """The longest beginning of a footprint's name in a fab's table, and its offset (degrees)."""
+    fitting = [each for each in fab.rotations if part.footprint.name.startswith(each[0])]
+    return max(fitting, key=lambda each: len(each[0]), default=("", 0.0))
 
 
 def _placed(part: Component, fab: Fab) -> Row:

@@ -92,6 +92,7 @@ def derive_fabs(config: Input) -> tuple[Fab, ...]:
             sides=fab.sides,
             back_from_behind=fab.back_angle == "from behind",
             rotations=tuple(fab.rotations.items()),
+            rotations_assumed=fab.rotations_assumed,
             remark=fab.remark,
         )
         for name, fab in config.catalogue.fabs.items()
