@@ -1,4 +1,5 @@
-"""The flange plugged into a live supply: ngspice against the closed forms and the limits."""
+"""The board that the supply enters, plugged into a live one: ngspice against the closed forms and
+the limits."""
 
 import dataclasses
 from pathlib import Path
@@ -23,9 +24,9 @@ def _design(design_dir: Path, volts: float) -> Design:
 
 
 def _simulated(design: Design, folder: Path) -> tuple[PlugIn, dict[str, float]]:
-    (plug_in,), (flange,) = design.electrical.plug_ins, design.flanges
-    (made,) = plug_in_simulation(design, flange)
-    assert made.path == "boards/flange/flange_plug_in.cir"
+    (plug_in,), (board,) = design.electrical.plug_ins, design.entered
+    (made,) = plug_in_simulation(design, board)
+    assert made.path == f"boards/{plug_in.board}/{plug_in.board}_plug_in.cir"
     return plug_in, simulated(made.data.decode(), folder)
 
 
@@ -87,7 +88,7 @@ def test_the_check_steps_through_the_same_pulse(
 
 def test_every_part_of_the_input_is_in_the_netlist(design_dir: Path) -> None:
     design = _design(design_dir, 24)
-    (made,) = plug_in_simulation(design, design.flanges[0])
+    (made,) = plug_in_simulation(design, design.entered[0])
     lines = made.data.decode().splitlines()
     assert {"R3 24V VIN 4.7", "D1 0 24V tvs", "MQ1 FUSED GATE 24V pmos"} <= set(lines)
     assert {"R1 24V GATE 100000", "R2 GATE 0 100000"} <= set(lines)
@@ -96,8 +97,31 @@ def test_every_part_of_the_input_is_in_the_netlist(design_dir: Path) -> None:
 
 def test_a_supply_without_regulator_has_a_tvs_diode_alone(design_dir: Path) -> None:
     design = _design(design_dir, 5)
-    (made,) = plug_in_simulation(design, design.flanges[0])
+    (made,) = plug_in_simulation(design, design.entered[0])
     assert "D1 0 5V tvs" in made.data.decode()
     assert "R3" not in made.data.decode()
     (board,) = (each for each in design.auxiliary_boards if each.name == "flange")
     assert {"D1", "F1", "Q1"} <= {part.ref for part in board.components}
+
+
+@needs_ngspice
+@pytest.mark.parametrize("name", ["franka_hand", "wsg50"])
+def test_without_a_flange_the_breakout_bears_a_live_and_a_reversed_supply(
+    design_dir: Path, name: str, tmp_path: Path
+) -> None:
+    design = derive(load(design_dir / f"presets/{name}.toml"))
+    latest = design.electrical.plug_ins[0].breakdown_v[1]
+    plug_in, found = _simulated(_changed(design, breakdown_v=(latest, latest)), tmp_path)
+    assert plug_in.board == "breakout"
+    for cable in ("short", "long"):
+        assert plug_in.supply_v < found[f"supply_v_{cable}"] <= min(plug_in.limit_v, 32.0)
+    assert found["reversed_v"] > -1.0
+    assert abs(found["reversed_ma"]) < 0.01
+
+
+@needs_ngspice
+def test_without_its_tvs_diode_the_breakout_rings(design_dir: Path, tmp_path: Path) -> None:
+    """The simulation can fail."""
+    design = derive(load(design_dir / "presets/franka_hand.toml"))
+    plug_in, found = _simulated(_changed(design, breakdown_v=(200.0, 220.0)), tmp_path)
+    assert found["supply_v_long"] > plug_in.limit_v

@@ -1,5 +1,5 @@
-"""Netlists for ngspice: of the fingers' boards, and of the flange's switching regulator and input,
-which is plugged into a live supply."""
+"""Netlists for ngspice: of the fingers' boards, and of the flange's switching regulator, and of
+the input that is plugged into a live supply."""
 
 import math
 from collections.abc import Iterable, Iterator
@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from lumitip_fab.boards.circuit import circuit
 from lumitip_fab.boards.model import GROUND
 from lumitip_fab.boards.spice_channel import STEPS, channel, corners, detectors, first_mux, string
-from lumitip_fab.design import AuxiliaryBoard, Component, Design, Finger, Flange
+from lumitip_fab.design import AuxiliaryBoard, Component, Design, Finger
 from lumitip_fab.design.electrical import PlugIn, Regulated
 from lumitip_fab.pipeline.artefact import Artefact
 from lumitip_fab.text import coded_ohm, passage
@@ -123,10 +123,9 @@ _PMOS = "pchan vto=-2 kp=0.4 rd=0.1 rs=0.1 cgs=0.19n cgdmax=0.15n cgdmin=0.02n c
 C_rss 20 pF), without voltage assumed."""
 
 
-def plug_in_simulation(design: Design, flange: Flange) -> tuple[Artefact, ...]:
-    """The netlist of a flange's input."""
+def plug_in_simulation(design: Design, board: AuxiliaryBoard) -> tuple[Artefact, ...]:
+    """The netlist of the input of the board that the supply enters."""
     (plug_in,) = design.electrical.plug_ins
-    board = next(b for b in design.auxiliary_boards if b.name == flange.auxiliary)
     title = design.title.on_boards()
     words = f"{title.name} {title.revision}, {board.name}: plugged into a live supply"
     lines = (*_plugged(board, plug_in), *_surge(board, plug_in))
@@ -144,9 +143,9 @@ def _plugged(board: AuxiliaryBoard, plug_in: PlugIn) -> Iterator[str]:
     yield f"Rfuse {contact} {fused} {_FUSE_OHM:g}"
     yield f"MQ1 {mosfet['D']} {mosfet['G']} {supply} pmos"
     yield f".model pmos vdmos({_PMOS})"
-    for ref in ("R1", "R2"):
-        if ref in parts:
-            yield f"{ref} {' '.join(_nets_of(parts[ref]))} {coded_ohm(parts[ref].value):g}"
+    for part in board.components:
+        if part.kind == "resistor" and mosfet["G"] in _nets_of(part):
+            yield f"{part.ref} {' '.join(_nets_of(part))} {coded_ohm(part.value):g}"
     cathode, anode = _nets_of(parts["D1"])
     low, high = plug_in.breakdown_v
     yield f"D1 {anode} {cathode} tvs"

@@ -31,6 +31,8 @@ class _Probe:
 
     ref: str
     net: str
+    name: str
+    """Beside a wire pad the wire's name, which a supply has before and behind the board's fuse."""
     least_mm: float
     pad: Terminal | None
 
@@ -53,7 +55,7 @@ def measure_probes(read: ReadBoard) -> Iterator[Measurement]:
     if bodies:
         room = min((room for _, room in best), default=math.nan)
         yield read.figure("probe_room", room, ROOM_MM, math.inf, note="to the nearest body")
-    unnamed = [f"{p.ref} has no {p.net} beside it" for p in found if not _named(read, p)]
+    unnamed = [f"{p.ref} has no {p.name} beside it" for p in found if not _named(read, p)]
     yield read.count("probe_names", unnamed, "pads")
 
 
@@ -84,8 +86,10 @@ def _probes(read: ReadBoard, net: str) -> Iterator[_Probe]:
             least = PROBE_MM if part.kind == "test point" else WIRE_PAD_MM
             terminals = read.parts[part.ref].terminals if part.ref in read.parts else ()
             pads = {t.number: t for t in terminals if t.copper is not None}
-            for number in (number for number, on in part.nets if on == net):
-                yield _Probe(part.ref, net, least, pads.get(number))
+            names = part.pins or tuple(on for _, on in part.nets)
+            for (number, on), name in zip(part.nets, names, strict=True):
+                if on == net:
+                    yield _Probe(part.ref, net, name, least, pads.get(number))
 
 
 def _reached(read: ReadBoard, probe: _Probe) -> bool:
@@ -137,7 +141,7 @@ def _named(read: ReadBoard, probe: _Probe) -> bool:
         return False
     at = shapely.Point(probe.pad.at)
     for word in read.board.silk.words:
-        if word.text == probe.net and word.front:
+        if word.text == probe.name and word.front:
             half = LETTER * word.height_mm * len(word.text) / 2
             flat = shapely.LineString([(-half, 0), (half, 0)])
             turned = affinity.rotate(flat, -word.angle_deg, origin=(0, 0))

@@ -28,6 +28,8 @@ _CONNECTORS = {
 }
 _OHM_MM2_PER_M = 0.0178
 _FIXED = {"GND": "BK", "3V3": "OG"}
+_BEFORE_FUSE = "_IN"
+"""End of a supply's net before its board's fuse; the wire has the supply's name."""
 
 Nets = dict[str, dict[str, str]]
 """Net of each pad, by board and by `"J1.3"`."""
@@ -73,7 +75,9 @@ def _wrong_ends(rows: tuple[Row, ...], nets: Nets) -> list[str]:
     wrong += [f"{' '.join(end)} twice" for end, times in taken.items() if times > 1]
     for row in rows:
         signals = {
-            nets[board].get(pad, "none") for board, pad in (row.start, row.end) if board in nets
+            nets[board].get(pad, "none").removesuffix(_BEFORE_FUSE)
+            for board, pad in (row.start, row.end)
+            if board in nets
         }
         if signals != {row.signal}:
             wrong.append(f"{row.wire}: {' and '.join(sorted(signals))}")

@@ -40,7 +40,7 @@ STEPS = (
     Step("models", "models.files.model_files", heavy=True, tools=_CAD, takes_s=3),
     Step("finger_spice", "boards.spice.simulation", "fingers"),
     Step("supply_spice", "boards.spice.supply_simulation", "regulated"),
-    Step("plug_in_spice", "boards.spice.plug_in_simulation", "flanges"),
+    Step("plug_in_spice", "boards.spice.plug_in_simulation", "entered"),
     Step("discharge_spice", "boards.spice_discharge.discharge_simulation", "protecting"),
     Step("assembly", "scenes.assembly.assembly", heavy=True, tools=_CAD, takes_s=6),
     Step("robot", "scenes.robot.robot_files", heavy=True, tools=_CAD, takes_s=4),

@@ -120,7 +120,8 @@ class Protection(Strict):
 
     diode: Name
     """ESD diode from each of these wires to ground, in `parts/esd_diodes.toml`; "none": the pins
-    are joined to the wires, without resistors and capacitors too."""
+    are joined to the wires, without resistors and capacitors too. Without a flange a breakout with
+    them also has fuse, MOSFET and TVS diode at its supply, those of `[flange]`."""
     resistor: Name
     """Package of the resistors, in `parts/resistors.toml`."""
     series_ohm: float = Field(ge=10, le=1e4)
@@ -138,7 +139,8 @@ class Breakout(Strict):
     socket: Name
     """Socket strip in `parts/strips.toml`; one for each row of the controller's pins."""
     board_mm: tuple[Size, Size]
-    """Length, along the controller, and width (mm)."""
+    """Length, along the controller, and width (mm). Where fuse, MOSFET and TVS diode are on it, it
+    is 5.08 mm wider than that."""
     hole_mm: float = Field(ge=1, le=9)
     """Diameter of its two screw holes (mm)."""
     hole_spacing_mm: float = Field(ge=5, le=180)

@@ -112,7 +112,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     rules = derive_rules(config, faults)
     refuse_receiver_capacitor(config, faults)
     optics = optics_of(config)
-    breakout = derive_breakout(config, muxing, faults)
+    breakout = derive_breakout(config, strings, muxing, faults)
     holders = derive_holder(config, breakout, faults)
     flange = derive_flange(config, strings, muxing, faults)
     flanges = derive_flange_body(config, flange, faults)

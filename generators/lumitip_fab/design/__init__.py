@@ -181,6 +181,12 @@ class Design:
         return tuple(auxiliary for auxiliary in self.auxiliary_boards if auxiliary.hot_loop)
 
     @property
+    def entered(self) -> tuple[AuxiliaryBoard, ...]:
+        """The auxiliary board that the supply enters through a fuse; none without it."""
+        names = [plug_in.board for plug_in in self.electrical.plug_ins]
+        return tuple(auxiliary for auxiliary in self.auxiliary_boards if auxiliary.name in names)
+
+    @property
     def protecting(self) -> tuple[AuxiliaryBoard, ...]:
         """The auxiliary board with the protection of the controller's pins; none without it."""
         protection = self.electrical.protection

@@ -139,8 +139,10 @@ class Regulated:
 
 @dataclass(frozen=True)
 class PlugIn:
-    """The flange as it is plugged into a live supply."""
+    """The board that the robot's supply enters, as it is plugged into a live supply."""
 
+    board: str
+    """Its name: the flange's, or the breakout without a flange."""
     supply_v: float
     """Highest supply."""
     cable_uh: tuple[float, float]
@@ -159,7 +161,8 @@ class PlugIn:
     tvs_ohm: float
     """Dynamic resistance of the TVS diode."""
     limit_v: float
-    """Largest voltage at the regulator's input; without a regulator, at the supply."""
+    """Largest voltage at the regulator's input; without a regulator, at the supply behind the
+    MOSFET."""
     peak_a: float
     """Peak of the current, without the cable's inductance."""
     pulse_a: float | None
@@ -278,7 +281,7 @@ class Electrical:
     supplies: tuple[Regulated, ...]
     """The flange's regulator; none without it."""
     plug_ins: tuple[PlugIn, ...] = ()
-    """The flange as it is plugged in; none without it."""
+    """The board that the supply enters; none where that does not protect its input."""
     indicators: tuple[Indicator, ...] = ()
     """The power LEDs, at most one for each board."""
     bulk: Bulk | None = None

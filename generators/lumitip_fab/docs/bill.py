@@ -33,6 +33,7 @@ _ON_BOARD = {
     "receiver": {"Q": "photodetector"},
     "emitter": {"U": "current source"},
     "flange": {"D1": "TVS diode"},
+    "breakout": {"D1": "TVS diode"},
 }
 """The same where a board has another kind of this letter, or of this part alone."""
 

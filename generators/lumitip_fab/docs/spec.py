@@ -8,11 +8,16 @@ from typing import Any
 import numpy as np
 
 from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Flange, Holder, Mount, TieLug
-from lumitip_fab.design.electrical import PlugIn
 from lumitip_fab.design.frames import gripper_to_base, gripper_to_tool
 from lumitip_fab.design.insert import LEAST_MARGIN_MM
 from lumitip_fab.docs.row import Row, rows_of
-from lumitip_fab.docs.spec_circuit import ambient_rows, channel_rows, electrical_rows, string_rows
+from lumitip_fab.docs.spec_circuit import (
+    ambient_rows,
+    channel_rows,
+    electrical_rows,
+    input_rows,
+    string_rows,
+)
 
 
 def outside(design: Design) -> Iterator[Row]:
@@ -35,9 +40,7 @@ def outside(design: Design) -> Iterator[Row]:
         charging_ma = 1000 * supply.charging_a
         least_a = supply.ripple_a / 2
         yield from rows_of("regulated", supply=supply, least_a=least_a, charging_ma=charging_ma)
-    for plug_in in design.electrical.plug_ins:
-        if plug_in.capacitor_uf:
-            yield from _plugged_in(plug_in)
+    yield from input_rows(design)
     for lit in design.electrical.indicators:
         milliwatts = {"takes_mw": 1000 * lit.resistor_w, "rated_mw": 1000 * lit.rated_w}
         yield from rows_of("lit", lit=lit, **milliwatts)
@@ -101,16 +104,6 @@ def _flange(auxiliary: AuxiliaryBoard) -> Iterator[Row]:
         yield from rows_of("module", **values)
 
 
-def _plugged_in(plug_in: PlugIn) -> Iterator[Row]:
-    rated = "" if plug_in.pulse_a is None else f"; its MOSFET bears {plug_in.pulse_a:g} A"
-    melts = ""
-    if plug_in.melting_a2s is not None:
-        share = 100 * plug_in.surge_a2s / plug_in.melting_a2s
-        melts = f"; {share:.0f} % of the fuse's melting I²t"
-    pulse_mj = 1000 * plug_in.pulse_j
-    return rows_of("plugged_in", plug_in=plug_in, rated=rated, melts=melts, pulse_mj=pulse_mj)
-
-
 def _stack(flange: Flange) -> Iterator[Row]:
     return rows_of(
         "stack",
@@ -136,10 +129,15 @@ def rows(design: Design) -> tuple[Row, ...]:
     )
 
 
+_INPUT = "flange.fuse", "flange.tvs", "flange.gate_ohm"
+"""Parts that a breakout has at its input where there is no flange."""
+
+
 def choice_rows(design: Design) -> tuple[Row, ...]:
     """Every automatic value with its reason, but for those of a flange that is not made."""
     of_parts = [c for c in design.choices if c.field != "flange.enabled"]
-    absent = () if design.flanges else [c for c in of_parts if c.field.startswith("flange.")]
+    made = ("flange.",) if design.flanges else _INPUT if design.entered else ()
+    absent = [c for c in of_parts if c.field.startswith("flange.") and not c.field.startswith(made)]
     chosen = [c for c in design.choices if c not in absent]
     return tuple(Row(c.field, "", c.value, c.reason) for c in chosen)
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from lumitip_fab.design import Design, Wiring
-from lumitip_fab.design.electrical import AmbientScan, Regulation
+from lumitip_fab.design.electrical import AmbientScan, PlugIn, Regulation
 from lumitip_fab.docs.row import Row, rows_of
 
 CONVERSION_US = 30
@@ -158,3 +158,27 @@ def _set_by(design: Design) -> str:
     if held:
         return f"with {held.source} each"
     return "through " + ", ".join(f"{ohms.count(ohm)} x {ohm:g} Ω" for ohm in sorted(set(ohms)))
+
+
+def input_rows(design: Design) -> Iterator[Row]:
+    """The input of the board that the supply enters: of a flange with a regulator as it is plugged
+    in; without a flange its parts, or that there are none."""
+    if design.flanges:
+        for plug_in in (each for each in design.electrical.plug_ins if each.capacitor_uf):
+            yield from _plugged_in(plug_in)
+        return
+    if not design.entered:
+        yield from rows_of("unprotected_input", supply_v=design.wiring.supply_v)
+    for board, plug_in in zip(design.entered, design.electrical.plug_ins, strict=True):
+        values = {device.ref: device.value for device in board.components}
+        yield from rows_of("input", board=board, plug_in=plug_in, **values)
+
+
+def _plugged_in(plug_in: PlugIn) -> Iterator[Row]:
+    rated = "" if plug_in.pulse_a is None else f"; its MOSFET bears {plug_in.pulse_a:g} A"
+    melts = ""
+    if plug_in.melting_a2s is not None:
+        share = 100 * plug_in.surge_a2s / plug_in.melting_a2s
+        melts = f"; {share:.0f} % of the fuse's melting I²t"
+    pulse_mj = 1000 * plug_in.pulse_j
+    return rows_of("plugged_in", plug_in=plug_in, rated=rated, melts=melts, pulse_mj=pulse_mj)

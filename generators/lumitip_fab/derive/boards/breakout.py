@@ -13,15 +13,18 @@
 ```
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from lumitip_fab.catalogue.controllers import Plug, Strip
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors, ties
+from lumitip_fab.derive.boards.breakout_input import board_mm, breakout_input
 from lumitip_fab.derive.boards.indicator import breakout_indicator
 from lumitip_fab.derive.boards.protection import breakout_protection, refuse_breakout
+from lumitip_fab.derive.boards.supply_input import FUSED, input_board, input_nets
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.protection import pin_net
+from lumitip_fab.derive.wiring.strings import Strings
 from lumitip_fab.derive.wiring.wiring import Muxing
 from lumitip_fab.design import AuxiliaryBoard, Box, Component, Note, Point, footprints
 from lumitip_fab.design.components import fiducials, mounted, numbered, wires
@@ -48,7 +51,7 @@ class Rows:
 
 
 def derive_breakout(
-    config: Input, muxing: Muxing, faults: Diagnostics
+    config: Input, strings: Strings, muxing: Muxing, faults: Diagnostics
 ) -> tuple[AuxiliaryBoard, ...]:
     """The breakout board; none if it is not wanted, or if the controller has no pins to plug."""
     p = config.parameters
@@ -56,7 +59,7 @@ def derive_breakout(
     if not p.breakout.enabled or plug is None:
         return ()
     strip = config.parts.breakout.socket
-    length, width = p.breakout.board_mm
+    length, width = board_mm(config)
     rows = _rows(plug, strip, width)
     _refuse(config, plug, strip, muxing, rows, faults)
     half = p.breakout.hole_spacing_mm / 2
@@ -71,10 +74,13 @@ def derive_breakout(
     refuse_breakout(config, cables, protecting, band_mm, holes, faults)
     light, legend = breakout_indicator(config, muxing, rows.wires_mm)
     marks = [(sign * (length / 2 - MARK_MM[0]), up * MARK_MM[1]) for sign, up in MARKS]
-    soldered = (*protecting, *light)
+    standing = (*joints, *protecting, *light)
+    entry = breakout_input(config, strings, standing, (beside_mm, rows.wires_mm), faults)
+    soldered = (*protecting, *light, *entry)
     parts = (*joints, *soldered, *(fiducials(marks) if soldered else ()))
     screws = [(at, p.breakout.hole_mm) for at in holes]
     emitter = connectors.emitter_signals(config)
+    before = (input_nets(config)[0], FUSED) if entry else ()
     return (
         AuxiliaryBoard(
             name="breakout",
@@ -87,7 +93,9 @@ def derive_breakout(
             ties=ties.derive_ties(parts, box, CORNER_MM, screws, "breakout.board_mm", faults),
             components=parts,
             notes=(Note("USB", (1.5 - length / 2, 0.0), 1.2, 90.0), *legend),
-            supplies=tuple(dict.fromkeys(("GND", connectors.REGULATED, "3V3", emitter[1]))),
+            supplies=tuple(
+                dict.fromkeys(("GND", connectors.REGULATED, "3V3", emitter[1], *before))
+            ),
             keep_outs=(),
             hot_loop=(),
         ),
@@ -136,8 +144,18 @@ def _components(
         *beside,
         _wires("J5", receiver, 0.0, -rows.wires_mm, length),
         _wires("J6", emitter, left, rows.wires_mm, length),
-        _wires("J7", supply, right, rows.wires_mm, length),
+        _entering(config, _wires("J7", supply, right, rows.wires_mm, length)),
     )
+
+
+def _entering(config: Input, cable: Component) -> Component:
+    """The wire pads that the board is fed by, with its supply on the net before the fuse where it
+    has one. The wires keep their names."""
+    if input_board(config) != "breakout":
+        return cable
+    raw, supply = input_nets(config)
+    nets = tuple((pad, raw if net == supply else net) for pad, net in cable.nets)
+    return replace(cable, nets=nets)
 
 
 def _net_of(plug: Plug, muxing: Muxing) -> dict[str, str]:

@@ -20,6 +20,13 @@ from lumitip_fab.derive.boards import flange_circuit
 from lumitip_fab.derive.boards.indicator import NOTE, flange_indicator, flange_probes
 from lumitip_fab.derive.boards.module import Supplies, derive_module
 from lumitip_fab.derive.boards.packages import capacitor
+from lumitip_fab.derive.boards.supply_input import (
+    FUSED,
+    Places,
+    input_nets,
+    input_parts,
+    is_regulated,
+)
 from lumitip_fab.derive.boards.ties import derive_ties
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.mount.base import refuse_base, refuse_module
@@ -42,8 +49,13 @@ CORNER_MM = 8.0
 CONTACTS_AT: Point = (7.46, 0.0)
 HEADERS_AT: tuple[Point, Point] = ((-3.5, -19.05), (-3.5, 19.05))
 TITLE_AT: Point = (6.0, 12.5)
-TVS = "tvs diode"
-TVS_AT: Point = (9.4, -10.8)
+INPUT_AT = Places(
+    fuse=((5.4, -7.0), 180.0),
+    transistor=((-1.0, -7.0), 270.0),
+    upper=((-5.2, -7.0), 90.0),
+    lower=((-2.0, -3.8), 0.0),
+    tvs=((9.4, -10.8), 0.0),
+)
 INRUSH_AT: Point = (-2.3, 0.0)
 HOLES_AT: tuple[Point, ...] = ((11.0, 19.5), (11.0, -19.5))
 INPUT = "VIN"
@@ -70,9 +82,9 @@ def derive_flange(
     wing = derive_module(config, module, muxing, Supplies(supply, output), BOX, faults)
     light = flange_indicator(config, output)
     module_parts = wing.components if wing else ()
-    parts = (*_input(config), *_regulator(config), *light, *module_parts)
+    parts = (*input_parts(config, INPUT_AT), *_regulator(config), *light, *module_parts)
     _refuse_lines(config, parts, faults)
-    behind = ("SW", INPUT) if flange_circuit.is_regulated(config) else ()
+    behind = ("SW", INPUT) if is_regulated(config) else ()
     components = (
         *_strips(config),
         *parts,
@@ -94,7 +106,7 @@ def derive_flange(
             ties=derive_ties(components, box, CORNER_MM, screws, "controller.board", faults),
             components=components,
             notes=(NOTE,) if light else (),
-            supplies=tuple(dict.fromkeys(("GND", supply, raw, "FUSED", output, *behind))),
+            supplies=tuple(dict.fromkeys(("GND", supply, raw, FUSED, output, *behind))),
             keep_outs=wing.keep_outs if wing else (),
             hot_loop=_hot_loop(config),
         ),
@@ -103,7 +115,7 @@ def derive_flange(
 
 def _hot_loop(config: Input) -> tuple[tuple[str, str], ...]:
     """The leads round which the regulator's input current switches; none without it."""
-    if not flange_circuit.is_regulated(config):
+    if not is_regulated(config):
         return ()
     names = config.parts.flange.regulator.names
     vin, ground = (str(names.index(name) + 1) for name in ("VIN", "GND"))
@@ -112,9 +124,7 @@ def _hot_loop(config: Input) -> tuple[tuple[str, str], ...]:
 
 def _supplies(config: Input) -> tuple[str, str, str]:
     """Nets of the contacts' supply, of the same after the MOSFET, and of the regulator."""
-    volts = f"{config.parameters.supply.voltage_v:g}V"
-    regulator = config.parts.flange.regulator
-    return f"{volts}_IN", volts, f"{regulator.output_v:g}V"
+    return *input_nets(config), f"{config.parts.flange.regulator.output_v:g}V"
 
 
 def _strips(config: Input) -> tuple[Component, ...]:
@@ -139,32 +149,11 @@ def _strips(config: Input) -> tuple[Component, ...]:
     return contacts, *both
 
 
-def _input(config: Input) -> tuple[Component, ...]:
-    """Fuse, the MOSFET with the supply, or half of a high one, at its gate, and the TVS diode."""
-    p, parts = config.parameters.flange, config.parts.flange
-    raw, supply, _ = _supplies(config)
-    leads = {"G": "GATE", "S": supply, "D": "FUSED"}
-    upper, lower = (
-        resistor(ref, p.gate_ohm, parts.resistor, nets, at, angle_deg)
-        for ref, nets, at, angle_deg in (
-            ("R1", (supply, "GATE"), (-5.2, -7.0), 90.0),
-            ("R2", ("GATE", "GND"), (-2.0, -3.8), 0.0),
-        )
-    )
-    return (
-        chip("F1", "fuse", p.fuse, parts.fuse, (raw, "FUSED"), (5.4, -7.0), 180.0),
-        leaded("Q1", "transistor", p.transistor, parts.transistor, leads, (-1.0, -7.0), 270.0),
-        *((upper,) if flange_circuit.halved(config) else ()),
-        lower,
-        chip("D1", TVS, p.tvs, parts.tvs, (supply, "GND"), TVS_AT, 0.0),
-    )
-
-
 def _regulator(config: Input) -> tuple[Component, ...]:
     """The regulator with its input capacitor across VIN and GND, the resistor before them, and
     what hangs on SW; nothing where the supply is what it would make."""
     p, parts = config.parameters.flange, config.parts.flange
-    if not flange_circuit.is_regulated(config):
+    if not is_regulated(config):
         return ()
     _, supply, output = _supplies(config)
     leads = {"FB": output, "EN": INPUT, "VIN": INPUT, "GND": "GND", "SW": "SW", "BST": "BST"}
@@ -209,7 +198,7 @@ def _refuse(config: Input, faults: Diagnostics) -> None:
     )
     least, most = flange_circuit.supply_range_v(config)
     faults.unless(
-        not flange_circuit.is_regulated(config) or least <= volts <= most,
+        not is_regulated(config) or least <= volts <= most,
         "flange_supply",
         least=least,
         most=most,
@@ -219,7 +208,7 @@ def _refuse(config: Input, faults: Diagnostics) -> None:
 
 def _refuse_unfed(config: Input, faults: Diagnostics) -> None:
     """Refuse headers of which none has every net that the breakout is fed with by one cable."""
-    p, regulated = config.parameters, flange_circuit.is_regulated(config)
+    p, regulated = config.parameters, is_regulated(config)
     if not p.breakout.enabled or config.parts.controller.board.plug is None:
         return
     needed = ("GND", "SUPPLY", *["REGULATED"] * regulated)

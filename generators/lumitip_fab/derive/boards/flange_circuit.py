@@ -6,6 +6,7 @@ import math
 from lumitip_fab.catalogue.controllers import OPEN, Strip
 from lumitip_fab.catalogue.grippers import Contact, ToolCoupling
 from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards.supply_input import input_range_v, is_regulated, refuse_input
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring import ratings
 from lumitip_fab.derive.wiring.strings import Strings
@@ -75,90 +76,25 @@ def _own(coupling: ToolCoupling) -> str:
     return json.dumps([_FOR.get(contact.kind, contact.carries) for contact in coupling.contacts])
 
 
-FUSE_SHARE = 0.75  # of its rating that a fuse carries for years
-GATE_SHARE = 0.8  # of what the MOSFET's gate bears, at the highest supply
 HEADROOM_V = 1.0  # a step-down regulator's input above its output
-EFFICIENCY = 0.8  # of the regulator at a small load, assumed
 STRAY_PF = 7.0  # at each of the crystal's terminals: 4 of the nRF52840's pin, the rest tracks
 MOST_OFF_PF = 1.5  # some 15 ppm of a crystal of 32.768 kHz
 
 
-def is_regulated(config: Input) -> bool:
-    """Whether the flange regulates its output from a higher supply; else they are one net."""
-    p = config.parameters
-    return p.supply.voltage_v != config.parts.flange.regulator.output_v
-
-
-def halved(config: Input) -> bool:
-    """Whether a divider halves a high supply for the MOSFET's gate."""
-    p = config.parameters
-    high_v = p.supply.voltage_v * (1 + ratings.SUPPLY_TOLERANCE)
-    return high_v > GATE_SHARE * config.parts.flange.transistor.gate_v
-
-
 def supply_range_v(config: Input) -> tuple[float, float]:
     """Least and greatest supply that regulator, fuse and transistor take."""
-    parts = config.parts.flange
-    part, transistor = parts.regulator, parts.transistor
-    gates = 2 if halved(config) else 1
-    least = max(
-        part.input_v[0],
-        part.output_v + HEADROOM_V,
-        gates * transistor.gate_on_v / (1 - ratings.SUPPLY_TOLERANCE),
-    )
-    least = math.ceil(10 * least - 1e-6) / 10
-    rated = (part.input_v[1], parts.fuse.rated_v, transistor.rated_v)
-    return least, min(*rated, gates * transistor.gate_v)
+    part = config.parts.flange.regulator
+    least, most = input_range_v(config)
+    least = max(part.input_v[0], part.output_v + HEADROOM_V, least)
+    return math.ceil(10 * least - 1e-6) / 10, min(part.input_v[1], most)
 
 
 def refuse_parts(config: Input, strings: Strings, faults: Diagnostics) -> None:
     """Refuse parts that are overloaded, and values with which the circuit does not work."""
-    faults.unless(config.parts.flange.transistor.channel == "P", "n_channel_in_supply")
-    _refuse_gate(config, faults)
-    _refuse_fuse(config, strings, faults)
+    refuse_input(config, strings, faults)
     ratings.refuse_flange_capacitors(config, faults)
     if config.parts.controller.board.module:
         _refuse_crystal(config, faults)
-
-
-def _refuse_gate(config: Input, faults: Diagnostics) -> None:
-    p = config.parameters
-    ohm, volts = p.flange.gate_ohm, p.supply.voltage_v / (2 if halved(config) else 1)
-    package = config.parts.flange.resistor
-    sold, allowed_w = ratings.sold_ohm(ohm), ratings.MOST_RESISTOR_LOAD * package.power_w
-    faults.unless(math.isclose(sold, ohm), "gate_not_sold", ohm=ohm, sold=sold)
-    load_w = (volts * (1 + ratings.SUPPLY_TOLERANCE)) ** 2 / (
-        ohm * (1 - ratings.RESISTOR_TOLERANCE)
-    )
-    faults.unless(
-        load_w <= allowed_w,
-        "gate_load",
-        ohm=ohm,
-        load_mw=1000 * load_w,
-        volts=volts,
-        allowed_mw=1000 * allowed_w,
-        least=ohm * load_w / allowed_w,
-    )
-
-
-def drawn_by_controller_ma(config: Input) -> float:
-    """Current of the controller, with the regulator's loss."""
-    return config.parts.controller.board.draws_ma / EFFICIENCY
-
-
-def _refuse_fuse(config: Input, strings: Strings, faults: Diagnostics) -> None:
-    p = config.parameters
-    output_v = config.parts.flange.regulator.output_v
-    fed_ma = drawn_by_controller_ma(config) * output_v / p.supply.voltage_v
-    drawn_ma = sum(strings.current_ma) + fed_ma
-    allowed_ma = 1000 * FUSE_SHARE * config.parts.flange.fuse.rated_a
-    faults.unless(
-        drawn_ma <= allowed_ma,
-        "fuse_small",
-        allowed_ma=allowed_ma,
-        fuse_share_percent=100 * FUSE_SHARE,
-        drawn_ma=drawn_ma,
-    )
 
 
 def _refuse_crystal(config: Input, faults: Diagnostics) -> None:

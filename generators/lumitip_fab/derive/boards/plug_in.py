@@ -1,4 +1,5 @@
-"""Plugging the flange into a live supply: cable, resistor, input capacitor and TVS diode.
+"""Plugging the board that the supply enters into a live one: cable, resistor, input capacitor and
+TVS diode. A breakout without a flange has no R3, U1 and C1.
 
 ```
 live supply ── cable (L) ── F1 ── Q1's body diode ──┬── to the LEDs
@@ -15,10 +16,11 @@ fuse and MOSFET. R3 damps the one and limits the other.
 import math
 
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.boards.flange_circuit import (
+from lumitip_fab.derive.boards.flange_circuit import supply_range_v
+from lumitip_fab.derive.boards.supply_input import (
     drawn_by_controller_ma,
+    input_board,
     is_regulated,
-    supply_range_v,
 )
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.ratings import (
@@ -41,24 +43,27 @@ PULSE_SHARE = 0.8
 
 
 def derive_plug_in(config: Input, faults: Diagnostics) -> tuple[PlugIn, ...]:
-    """Figures of the flange as it is plugged in; none without it.
+    """Figures of the board that the supply enters as it is plugged in; none where that does not
+    protect its input.
 
     Raises nothing: parts that do not bear it are reported to `faults`.
     """
-    p, parts = config.parameters, config.parts.flange
-    if not p.flange.enabled:
+    p, parts, board = config.parameters, config.parts.flange, input_board(config)
+    if board is None:
         return ()
-    high_v = p.supply.voltage_v * (1 + SUPPLY_TOLERANCE)
-    if not is_regulated(config):
+    high_v, regulates = p.supply.voltage_v * (1 + SUPPLY_TOLERANCE), _regulates(config)
+    if not regulates:
         _refuse_tvs(config, faults)
     elif p.supply.voltage_v <= supply_range_v(config)[1]:  # else the supply itself is refused
         _refuse_tvs(config, faults)
         _refuse_inrush(config, faults)
     capacitor = parts.input_capacitor
-    full_uf = capacitor.capacitance_nf / 1000 if is_regulated(config) else 0.0
+    full_uf = capacitor.capacitance_nf / 1000 if regulates else 0.0
     low_ohm = p.flange.inrush_ohm * (1 - RESISTOR_TOLERANCE)
+    surge_j = _surge_j(config) if regulates else 0.0
     return (
         PlugIn(
+            board=board,
             supply_v=high_v,
             cable_uh=CABLE_UH,
             inrush_ohm=p.flange.inrush_ohm,
@@ -68,14 +73,30 @@ def derive_plug_in(config: Input, faults: Diagnostics) -> tuple[PlugIn, ...]:
             capacitor_tolerance=CAPACITANCE_TOLERANCE,
             breakdown_v=parts.tvs.breakdown_v,
             tvs_ohm=parts.tvs.dynamic_ohm,
-            limit_v=parts.regulator.input_v[1] if is_regulated(config) else parts.tvs.clamping_v,
+            limit_v=_limit_v(config),
             peak_a=high_v / low_ohm if full_uf else 0.0,
             pulse_a=parts.transistor.pulse_a,
-            surge_a2s=_surge_j(config) / low_ohm,
+            surge_a2s=surge_j / low_ohm,
             melting_a2s=parts.fuse.melting_a2s,
-            pulse_j=_surge_j(config),
+            pulse_j=surge_j,
         ),
     )
+
+
+def _regulates(config: Input) -> bool:
+    """Whether a regulator with an input capacitor is behind the input: on a flange alone."""
+    return input_board(config) == "flange" and is_regulated(config)
+
+
+def _limit_v(config: Input) -> float:
+    """Largest voltage of what is behind the input, by its ratings: of a regulator; of the LEDs'
+    current sources on the way from a breakout; else of the TVS diode's pulse."""
+    parts = config.parts
+    if _regulates(config):
+        return parts.flange.regulator.input_v[1]
+    if input_board(config) == "breakout" and config.parameters.emitter.drive == "source":
+        return parts.emitter.source.rated_v
+    return parts.flange.tvs.clamping_v
 
 
 def least_inrush_ohm(config: Input) -> float:
@@ -120,7 +141,7 @@ def _refuse_tvs(config: Input, faults: Diagnostics) -> None:
         volts=volts,
         high_v=high_v,
     )
-    bears_v = parts.regulator.input_v[1] if is_regulated(config) else parts.transistor.rated_v
+    bears_v = min(parts.transistor.rated_v, _limit_v(config))
     faults.unless(
         tvs.breakdown_v[1] <= bears_v, "tvs_late", bears_v=bears_v, breakdown_v=tvs.breakdown_v[1]
     )

@@ -118,7 +118,7 @@ def derive_ties(
         field: parameter to name where a row has no room.
         faults: where rows without room are refused.
     """
-    taken = tuple(shape for part in components for shape in _boxes(part))
+    taken = tuple(shape for part in components for shape in boxes_of(part))
     holes, ties = tuple(screws), list[Tie]()
     for row in (part for part in components if part.kind == "wires" and part.pins):
         # The corners of the rim are rounder by what a hole keeps to the edge.
@@ -162,7 +162,7 @@ def _beside(x_mm: float, y_mm: float, width_mm: float) -> Iterator[Pair]:
                 yield (middle - apart / 2, y_mm), (middle + apart / 2, y_mm)
 
 
-def _boxes(part: Component) -> Iterator[Box]:
+def boxes_of(part: Component) -> Iterator[Box]:
     """Pads of a part, its body and its shroud on the board, as upright rectangles."""
     shape = part.footprint
     ring = _FIDUCIAL_MM if part.kind == "fiducial" else 0.0

@@ -181,10 +181,11 @@ def _pads(finger: Finger) -> tuple[Terminal, ...]:
 
 
 def _wires_of(auxiliary: AuxiliaryBoard, ref: str) -> tuple[Terminal, ...]:
-    """The wire pads of a connector of an auxiliary board, in their order."""
+    """The wire pads of a connector of an auxiliary board, in their order, with the names beside
+    them: that of a supply is the same before and behind the board's fuse."""
     device: Component = next(d for d in auxiliary.components if d.ref == ref)
-    pads = enumerate(device.nets, 1)
-    return tuple(Terminal(auxiliary.name, ref, pad, net, place) for place, (pad, net) in pads)
+    pads = enumerate(zip(device.nets, device.pins, strict=True), 1)
+    return tuple(Terminal(auxiliary.name, ref, pad, name, at) for at, ((pad, _), name) in pads)
 
 
 def _feeding(
