@@ -107,7 +107,7 @@ def reference_under_a_body(text: str) -> str:
 DAMAGES: dict[Damage, set[str]] = {
     resistor_small: {"plug_in_voltage", "plug_in_current"},
     resistor_without_a_value: {"plug_in_voltage", "plug_in_current", "plug_in_surge"},
-    resistor_bridged: {"undamped", "short", "joined"},
+    resistor_bridged: {"undamped", "supply_input", "short", "joined"},  # it meets ground, too
     tvs_reversed: {
         "tvs",
         "lands",

@@ -103,7 +103,7 @@ def test_pitch_touches_everything_of_the_fingers(keys: Keys) -> None:
 
 def test_what_is_outside_touches_no_finger(keys: Keys) -> None:
     after = keys("[breakout]\nhole_spacing_mm = 34.0\n")
-    boards = {"other_board", "models", "wiring", "plug_in_spice"}  # all boards are read there
+    boards = {"other_board", "models", "wiring"}  # all boards are read there
     assert changed(keys(), after) == {*boards, "holder"}
     # The wiring note has the lugs of the holder.
     assert changed(keys(), keys("[holder]\nbody_mm = 76.0\n")) == {"holder", "wiring"}
