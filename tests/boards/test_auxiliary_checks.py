@@ -171,7 +171,7 @@ DAMAGES: dict[Damage, set[str]] = {
     hole_of_a_pad_wider: {"lands"},
     pad_without_copper: {
         *("lands", "apart", "tie_count", "tie_width", "hole_clearance"),
-        *("probes", "probe_names"),
+        *("probes", "probe_names", "silk_bodies"),
     },
     wires_exchanged: {"lands", "apart", "joined", "probes"},
     socket_pins_exchanged: {"open", "short"},
@@ -192,7 +192,7 @@ DAMAGES: dict[Damage, set[str]] = {
     tie_missing: {"tie_count", "ties", "tie_reach", "other_parts"},
     tie_over_the_edge: {"ties", "tie_edge", "hole_clearance"},
     tie_under_a_socket: {"ties", "tie_reach", "tie_parts", "tie_silk", "hole_clearance"},
-    text_over_a_tie: {"tie_silk"},
+    text_over_a_tie: {"tie_silk", "silk_bodies"},
     edge_moved: {"outline"},
     fill_adrift: {"islands", "hole_clearance"},
     title_lost: {"silk_title"},
