@@ -120,10 +120,11 @@ DAMAGES: dict[Damage, set[str]] = {
     dot_lost: {"silk_marks"},
     references_exchanged: {"silk_bodies"},
     reference_under_a_body: {"silk_bodies"},
-    contacts_in_front: {"lands"},
+    contacts_in_front: {"lands", "silk_bodies"},
     # Its pads lie in the ground pour.
     capacitor_far: {
         "lands",
+        "silk_bodies",
         "bypass_via",
         "hot_loop",
         "hot_loop_input",
