@@ -1,7 +1,6 @@
 """The supply's input on the breakout without a flange: what is there, and what its check finds
 damaged."""
 
-import dataclasses
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -98,13 +97,12 @@ def test_a_damage_of_the_input(damage: Damage, folder: Path) -> None:
     assert failing(folder, "board", "breakout") & OWN == DAMAGES[damage]
 
 
-def test_a_design_without_its_figures_fails(design_dir: Path, folder: Path) -> None:
-    """A breakout that ought to protect its input, and does not."""
-    path = folder / "design.json"
-    design = _design(design_dir)
-    electrical = dataclasses.replace(design.electrical, plug_ins=())
-    path.write_text(design_text(dataclasses.replace(design, electrical=electrical)))
-    assert "plug_in_voltage" in failing(folder, "board", "breakout")
+@pytest.mark.parametrize("volts", [4.0, 36.0])
+def test_a_supply_that_no_part_is_made_for_is_not_refused(design_dir: Path, volts: float) -> None:
+    design = _design(design_dir, supply__voltage_v=volts)
+    assert design.entered == () and design.electrical.plug_ins == ()
+    rows = {row.quantity: row.computed for row in outside(design)}
+    assert rows[f"input of the {volts:g} V"] == "no fuse, no MOSFET, no TVS diode"
 
 
 def test_the_published_circuit_has_none_and_says_so(design_dir: Path) -> None:

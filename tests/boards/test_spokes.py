@@ -38,7 +38,7 @@ def _starved(fill: shapely.Geometry, loose: Sequence[Copper] = (VIA,)) -> float:
     )
     pour = Copper("fill", "GND", FRONT, fill)
     board = KicadBoard(
-        (part,), (pour, *loose), ("F.Cu", "B.Cu"), (), Silk((), ()), (), (), {}, math.nan
+        (part,), (pour, *loose), ("F.Cu", "B.Cu"), (), Silk((), (), {}), (), (), {}, math.nan
     )
     read = ReadBoard("board", "board", board, None, None)  # type: ignore[arg-type]
     (measured,) = measure_spokes(read)

@@ -41,12 +41,11 @@ def measure_plug_in(read: ReadBoard) -> Iterator[Measurement]:
 
 
 def _entered(read: ReadBoard) -> str | None:
-    """The first board that the supply reaches, where that has to have fuse, MOSFET and TVS diode.
-    The published circuit, which protects no pins, has none of them on the breakout."""
+    """The first board that the supply reaches, where that has fuse, MOSFET and TVS diode. The
+    published circuit, which protects no pins, has none of them on the breakout."""
     for flange in read.design.flanges:
         return flange.auxiliary
-    protection = read.design.electrical.protection
-    return _BREAKOUT if protection is not None and protection.board == _BREAKOUT else None
+    return next((plug_in.board for plug_in in read.design.electrical.plug_ins), None)
 
 
 def _poles(read: ReadBoard) -> tuple[int | None, int | None]:

@@ -17,7 +17,6 @@ from lumitip_fab.derive.boards.supply_input import (
     Places,
     input_board,
     input_parts,
-    input_range_v,
     refuse_input,
 )
 from lumitip_fab.derive.boards.ties import boxes_of
@@ -58,9 +57,6 @@ def breakout_input(
     if input_board(config) != "breakout":
         return ()
     refuse_input(config, strings, faults)
-    volts = config.parameters.supply.voltage_v
-    least, most = input_range_v(config)
-    faults.unless(least <= volts <= most, "input_supply", least=least, most=most)
     right, (low, high) = config.parameters.breakout.board_mm[0] / 2, rows_mm
     places = Places(
         fuse=((right - 4.36, low + 2.24), 180.0),

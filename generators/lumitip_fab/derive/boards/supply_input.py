@@ -45,10 +45,19 @@ class Places:
 
 def input_board(config: Input) -> str | None:
     """Name of the board that has these parts: the flange's, or the breakout where that protects
-    its pins as well; none where the fingers are wired to the supply themselves."""
+    its pins as well and the parts are made for the supply; else none."""
     if config.parameters.flange.enabled:
         return "flange"
-    return "breakout" if protection.protecting_board(config) == "breakout" else None
+    protects = protection.protecting_board(config) == "breakout"
+    return "breakout" if protects and _fit_the_supply(config) else None
+
+
+def _fit_the_supply(config: Input) -> bool:
+    """Whether fuse, MOSFET and TVS diode are made for the supply."""
+    volts, tvs = config.parameters.supply.voltage_v, config.parts.flange.tvs
+    least, most = input_range_v(config)
+    high_v = volts * (1 + ratings.SUPPLY_TOLERANCE)
+    return least <= volts <= most and tvs.standoff_v >= volts and tvs.breakdown_v[0] >= high_v
 
 
 def input_nets(config: Input) -> tuple[str, str]:
