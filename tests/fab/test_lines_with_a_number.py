@@ -9,7 +9,7 @@ from lumitip_fab.boards.placement import place
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive import derive
 
-AT_LEAST = 0.95
+AT_LEAST = 0.94
 PULL_UPS = "YC164-FR-0716KL"  # arrays of 16 kOhm, whose number is not known
 SOLD = {
     "asymmetric": "VSMY1850",

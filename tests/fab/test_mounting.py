@@ -214,7 +214,7 @@ def test_firmware_and_program_are_named_with_their_place(preset: str, written: W
             ],
             [],
         ),
-        ("wsg50", {}, ["ESD diodes Z1 to Z10"], ["TVS", "fuse"]),
+        ("wsg50", {}, ["ESD diodes Z1 to Z10", "the TVS diode D1", "fuse F1"], ["flange"]),
         ("published", {}, ["TVS diode D1"], ["ESD", "diode test"]),
         ("published", {"flange.enabled": False}, [], ["ESD", "TVS", "fuse", "diode test"]),
     ],
