@@ -33,7 +33,7 @@ ROWS = {
     BOM: b"pogo 2x5,J1,SpringContacts_2x05_P2.54mm_D0.85mm,,827-22-010-10-001101,1\r\n",
     PLACES: b"J1,7.4600,0.0000,Bottom,180\r\n",
 }
-"""What the tables would have of the contacts."""
+"""Rows of the contacts, as the tables would have them."""
 
 
 @pytest.mark.parametrize(("name", "check"), [(BOM, "bom"), (PLACES, "placed")])

@@ -53,8 +53,7 @@ class Strip(Ordered, Entry):
     stroke_mm: float = Field(default=0, ge=0, le=10)
     """Travel of spring contacts; 0 for others."""
     hand_soldered: bool = False
-    """Whether it is soldered on by hand after the PCB fab has mounted the rest: no fab's bill of
-    materials or placement list has it."""
+    """Whether it is soldered on by hand, and so in no PCB fab's bill or placement list."""
     shroud: Shroud | None = None
     """Shroud of a right-angle box header; none for others, whose body is over their contacts."""
     mate: Name | None = None

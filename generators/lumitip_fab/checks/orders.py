@@ -207,8 +207,8 @@ def _misplaced(read: ReadBoard, note: str) -> Iterator[str]:
     told_behind = set(behind[1].split(", ")) if behind else set()
     first_pads = {m["ref"]: (float(m["x"]), float(m["y"])) for m in _FIRST_PADS.finditer(note)}
     mounted = read.assembled()
-    told = re.search(r"^NOT MOUNTED BY YOU: (.+?)\. The customer", note, re.MULTILINE)
-    named = set(re.findall(r"([A-Z]+\d+(?:_\d+)?) \(", told[1])) if told else set()
+    row = re.search(r"^NOT MOUNTED BY YOU: (.+?)\. The customer", note, re.MULTILINE)
+    named = set(re.findall(r"([A-Z]+\d+(?:_\d+)?) \(", row[1])) if row else set()
     yield from sorted(named ^ {p.ref for p in read.board.parts if p.bought} ^ mounted)
     for part in (part for part in read.board.parts if part.ref in mounted):
         first = next(t.at for t in part.terminals if t.number == "1")

@@ -14,15 +14,7 @@ from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks.readers import kicad_shapes as shapes
 from lumitip_fab.checks.readers.kicad_mask import Opening, openings
-from lumitip_fab.checks.readers.kicad_shapes import (
-    Node,
-    child,
-    children,
-    nodes,
-    numbers,
-    read_text,
-    words,
-)
+from lumitip_fab.checks.readers.kicad_shapes import Node, child, children, nodes, numbers, words
 from lumitip_fab.checks.readers.kicad_silk import Silk, silk
 from lumitip_fab.errors import OutputError
 
@@ -136,7 +128,7 @@ def read_board(path: Path) -> KicadBoard:
     Raises:
         OutputError: if it is missing, or is no board.
     """
-    text = read_text(path)
+    text = shapes.read_text(path)
     try:
         return _board(text)
     except (ValueError, ShapelyError) as error:
