@@ -7,6 +7,14 @@ from functools import cache
 
 import pytest
 
+WITH_3D = [
+    "--no-sandbox",
+    "--use-gl=swiftshader",
+    "--ignore-gpu-blocklist",
+    "--disable-gpu-watchdog",
+]
+"""Options of Chromium for pages with 3D views: drawn by the processor, which may take its time."""
+
 _PACKAGES = {
     "kicad-cli": "kicad (version 9)",
     "pdftoppm": "poppler-utils",

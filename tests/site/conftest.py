@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from lumitip_fab.cli import main
-from programs import program
+from programs import WITH_3D, program
 from site_page import Opened
 
 
@@ -39,10 +39,7 @@ def edited(site: Path, tmp_path: Path) -> Path:
 @pytest.fixture(scope="module")  # while it is open, no other test of a process can open one
 def browser() -> Iterator[Browser]:
     with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(
-            executable_path=program("chromium"),
-            args=["--no-sandbox", "--use-gl=swiftshader", "--ignore-gpu-blocklist"],
-        )
+        opened = playwright.chromium.launch(executable_path=program("chromium"), args=WITH_3D)
         yield opened
         opened.close()
 
