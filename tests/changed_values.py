@@ -79,6 +79,7 @@ CHANGES: dict[str, Any] = {
     "breakout.hole_mm": 2.2,
     "breakout.hole_spacing_mm": 35.0,
     "breakout.indicator": "KT-0805YG",
+    "breakout.feed_diode": "1N5819HW",
     "holder.body_mm": 76.0,
     "holder.clearance_mm": 0.4,
     "holder.wall_mm": 3.2,

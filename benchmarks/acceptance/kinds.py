@@ -117,6 +117,7 @@ def _boards(random: Random, _: Table, _base: str) -> Table:
             "flange.enabled": lambda: random.random() < 0.3,
             "emitter.switch": lambda: random.choice(("auto", "none")),
             "breakout.indicator": lambda: random.choice(("auto", "none")),
+            "breakout.feed_diode": lambda: random.choice(("auto", "none")),
             "flange.indicator": lambda: random.choice(("auto", "none")),
             "receiver.bulk_capacitor": lambda: random.choice(("auto", "none")),
             "protection.diode": lambda: random.choice(("auto", "none")),

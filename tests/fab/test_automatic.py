@@ -71,6 +71,7 @@ def test_the_published_grid_keeps_the_published_values(inputs: dict[str, Input])
     pull_ups = {"receiver.load", "receiver.pull_up_ohm"}
     added = {"emitter.drive", "emitter.switch", "flange.indicator", "receiver.bulk_capacitor"}
     added |= {
+        "breakout.feed_diode",
         "breakout.indicator",
         "protection.diode",
         "backing.flare_mm",
@@ -85,6 +86,7 @@ def test_every_choice_has_a_value_and_a_reason_in_one_line(file: Any) -> None:
     choices = {choice.field: choice for choice in design.choices}
     stated = {"receiver.load", "emitter.drive", "emitter.switch", "flange.indicator"}
     stated |= {"breakout.indicator", "receiver.bulk_capacitor", "wiring.order", "protection.diode"}
+    stated |= {"breakout.feed_diode"}
     assert set(choices) == set(automatic_fields()) - stated, "published.toml states these"
     assert choices["receiver.photodetector"].value == "'PT19-21C'"
     assert "needs a pitch of at least 3.70 mm" in choices["receiver.photodetector"].reason

@@ -76,10 +76,11 @@ def test_every_field_has_the_published_value_as_its_default(
     schema: dict[str, Any], published: dict[str, Any], field: str
 ) -> None:
     section, key = field.split(".")
-    # The published boards share pull-ups, and have no sources, switch, power LEDs, bulk capacitor
-    # or ESD diodes; their wires have an order of their own.
+    # The published boards share pull-ups, and have no sources, switch, power LEDs, bulk capacitor,
+    # ESD diodes or diode before the controller; their wires have an order of their own.
     differs = {"receiver.load", "emitter.drive", "emitter.switch"}
     differs |= {
+        "breakout.feed_diode",
         "breakout.indicator",
         "flange.indicator",
         "receiver.bulk_capacitor",

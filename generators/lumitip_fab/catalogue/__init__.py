@@ -6,7 +6,7 @@ Every entry says where its figures come from (`source`) and how far to trust the
 
 from collections.abc import Mapping
 
-from lumitip_fab.catalogue import clamps, electronics
+from lumitip_fab.catalogue import clamps, electronics, rectifiers
 from lumitip_fab.catalogue import controllers as control
 from lumitip_fab.catalogue import current_sources as sources
 from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
@@ -47,6 +47,7 @@ class Catalogue(Strict):
     transistors: Mapping[Name, control.Transistor]
     tvs_diodes: Mapping[Name, clamps.TvsDiode]
     esd_diodes: Mapping[Name, clamps.EsdDiode]
+    schottky_diodes: Mapping[Name, rectifiers.SchottkyDiode]
     indicators: Mapping[Name, electronics.Indicator]
     couplings: Mapping[Name, ToolCoupling]
     grippers: Mapping[Name, Gripper]

@@ -26,6 +26,7 @@ from lumitip_fab.checks.board_silk import measure_labels, measure_prints, measur
 from lumitip_fab.checks.board_silk_bodies import measure_bodies
 from lumitip_fab.checks.board_strings import measure_strings, measure_switch
 from lumitip_fab.checks.board_ties import measure_ties
+from lumitip_fab.checks.feed import measure_feed
 from lumitip_fab.checks.plug_in import measure_plug_in
 from lumitip_fab.checks.readers.kicad_board import Part, Terminal
 from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
@@ -263,6 +264,7 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     measure_contact_map,
     measure_passed_on,
     measure_plug_in,
+    measure_feed,
     measure_indicator,
     measure_probes,
     measure_protection,

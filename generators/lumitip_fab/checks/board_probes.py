@@ -60,11 +60,12 @@ def measure_probes(read: ReadBoard) -> Iterator[Measurement]:
 
 
 def _wanted(read: ReadBoard) -> list[str]:
-    """Nets that need a pad: supplies on contacts, those that a regulator makes, ground, and the
-    data lines of a coupling that are not left open."""
+    """Nets that need a pad: supplies on contacts of cables and couplings, those that a regulator
+    makes, ground, and the data lines of a coupling that are not left open."""
     board = read.auxiliary
     assert board is not None
-    leaving = {net for part in board.components if part.contacts for _, net in part.nets}
+    cables = (part for part in board.components if part.contacts and part.kind != "socket")
+    leaving = {net for part in cables if part.pins for _, net in part.nets}
     nets = [net for net in board.supplies if net in leaving]
     for part in board.components:
         named = dict(zip((pad.number for pad in part.footprint.pads), part.pins, strict=False))

@@ -3,7 +3,14 @@
 from dataclasses import dataclass, fields
 from typing import Any, get_args, get_type_hints
 
-from lumitip_fab.catalogue import Catalogue, clamps, controllers, current_sources, electronics
+from lumitip_fab.catalogue import (
+    Catalogue,
+    clamps,
+    controllers,
+    current_sources,
+    electronics,
+    rectifiers,
+)
 from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
 from lumitip_fab.catalogue.materials import (
     Adhesive,
@@ -70,6 +77,7 @@ class BreakoutParts:
 
     socket: controllers.Strip
     indicator: electronics.Indicator | None
+    feed_diode: rectifiers.SchottkyDiode | None
 
 
 @dataclass(frozen=True)

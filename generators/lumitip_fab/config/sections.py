@@ -147,6 +147,10 @@ class Breakout(Strict):
     """From hole to hole, of the board and of its holder alike (mm)."""
     indicator: Name
     """Power LED at the controller's supply, in `parts/indicators.toml`, or "none"."""
+    feed_diode: Name
+    """Schottky diode between the wire that feeds the controller and its pin, in
+    `parts/schottky_diodes.toml`: USB, plugged into the controller, then feeds nothing else. "none":
+    they are joined, and USB feeds the robot's supply backwards."""
 
 
 class Holder(Strict):

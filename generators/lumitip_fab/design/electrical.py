@@ -211,6 +211,27 @@ class Indicator:
 
 
 @dataclass(frozen=True)
+class Feed:
+    """The way from a wire to the controller's supply pin."""
+
+    board: str
+    diode: str | None
+    """In the catalogue; none where wire and pin are joined."""
+    wire: str
+    """Name of the wire."""
+    pin: str
+    """Name of the controller's pin."""
+    wire_v: float
+    """Least voltage at the wire's end."""
+    drawn_ma: float
+    """Largest current of the controller."""
+    drop_v: float
+    """Largest forward voltage of the diode at that current; 0 without one."""
+    least_v: float
+    """With which the controller works."""
+
+
+@dataclass(frozen=True)
 class Bulk:
     """The bulk capacitor of the receiver at the end of its supply's wire."""
 
@@ -284,6 +305,8 @@ class Electrical:
     """The board that the supply enters; none where that does not protect its input."""
     indicators: tuple[Indicator, ...] = ()
     """The power LEDs, at most one for each board."""
+    feed: Feed | None = None
+    """None where no wire of a board feeds the controller."""
     bulk: Bulk | None = None
     """The receiver's bulk capacitor; none without it."""
     protection: Protection | None = None

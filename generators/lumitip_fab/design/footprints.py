@@ -26,6 +26,7 @@ _CHIPS = {
     "crystal": "XTAL",
     "tvs diode": "DIOM",
     "esd diode": "DIOM",
+    "schottky diode": "DIOM",
 }
 """First letters of a chip's name by its kind; of phototransistors the standard has none."""
 

@@ -25,6 +25,7 @@ _KINDS = {
     "R": "resistor",
     "RN": "resistor array",
     "U": "circuit",
+    "VD": "Schottky diode",
     "Y": "crystal",
     "Z": "ESD diode",
 }

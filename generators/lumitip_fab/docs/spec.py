@@ -41,6 +41,9 @@ def outside(design: Design) -> Iterator[Row]:
         least_a = supply.ripple_a / 2
         yield from rows_of("regulated", supply=supply, least_a=least_a, charging_ma=charging_ma)
     yield from input_rows(design)
+    if feed := design.electrical.feed:
+        left_v = feed.wire_v - feed.drop_v
+        yield from rows_of("feed" if feed.diode else "joined_feed", feed=feed, left_v=left_v)
     for lit in design.electrical.indicators:
         milliwatts = {"takes_mw": 1000 * lit.resistor_w, "rated_mw": 1000 * lit.rated_w}
         yield from rows_of("lit", lit=lit, **milliwatts)

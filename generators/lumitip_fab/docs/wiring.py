@@ -60,7 +60,7 @@ def wiring_note(design: Design) -> str:
         title=as_written(f"{title.name} {title.revision}"),
         tables="\n\n".join(map(_table, cabling.cables)),
         marked=_marked(cabling, design.purchase.pack("stranded wire")),
-        power=_power(cabling),
+        power=_power(design),
         travel_mm=cabling.travel_mm,
         controller_mm=cabling.controller_mm,
         supply_mm=cabling.supply_mm,
@@ -122,11 +122,12 @@ def listed(names: list[str]) -> str:
     return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
-def _power(cabling: Cabling) -> str:
+def _power(design: Design) -> str:
     """How the controller comes by its supply, and what switches the LEDs."""
+    cabling, feed = design.cabling, design.electrical.feed
     wires = (wire for cable in cabling.cables for wire in cable.wires)
     switching = [wire for wire in wires if wire.signal == "LED"]
-    said = _seated(cabling) + _fed_by(cabling)
+    said = _seated(cabling) + _fed_by(cabling, joined=not (feed and feed.diode))
     if switching and switching[0].end.board == "controller":
         said = passage(_TEXTS, "alone_switched").format(pin=switching[0].end.pin)
     return said + (passage(_TEXTS, "switched") if switching else "")
@@ -138,8 +139,8 @@ def _seated(cabling: Cabling) -> str:
     return passage(_TEXTS, "seated") if "breakout" in boards else ""
 
 
-def _fed_by(cabling: Cabling) -> str:
-    """How the controller comes by its supply."""
+def _fed_by(cabling: Cabling, joined: bool) -> str:
+    """How the controller comes by its supply, joined to its wire or behind a diode."""
     if cabling.cables[1].end.board == "flange":
         return passage(_TEXTS, "module")
     if not fed(cabling):
@@ -151,7 +152,8 @@ def _fed_by(cabling: Cabling) -> str:
     thick = section_mm2 > SLOT_MM2 or outer_mm(section_mm2) > SLOT_MM
     pressed = passage(_TEXTS, "pressed_flat" if thick else "pressed").format(slot_mm=SLOT_MM)
     lit = any(wire.signal == "5V" for wire in cabling.cables[0].wires)
-    return passage(_TEXTS, "lit" if lit else "fed") + "".join(
+    feeds = "lit" if lit else "fed_joined" if joined else "fed"
+    return passage(_TEXTS, feeds) + "".join(
         passage(_TEXTS, "at_flange").format(header=header, contacts=contacts, pressed=pressed)
         for header in sorted(headers)
     )

@@ -118,6 +118,7 @@ _COLOURS: dict[str, Colour] = {
     "crystal": (0.72, 0.70, 0.62),
     "tvs diode": (0.16, 0.16, 0.17),
     "esd diode": (0.16, 0.16, 0.17),
+    "schottky diode": (0.16, 0.16, 0.17),
     "led": (0.95, 0.90, 0.70),
     "indicator": (0.80, 0.95, 0.82),
     "photodetector": (0.30, 0.26, 0.34),

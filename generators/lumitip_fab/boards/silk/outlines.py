@@ -26,6 +26,7 @@ _MARKED = (
     "switch",
     "tvs diode",
     "esd diode",
+    "schottky diode",
     "indicator",
     "socket",
     "header",
@@ -97,7 +98,7 @@ def _outline(component: Component, rules: Rules, gap_mm: float) -> tuple[Stroke,
         return _socket(shape, rules)
     if kind in ("regulator", "current source", "transistor", "switch"):
         return (_dot(shape.pads[0], rules, _BAR_MM),)
-    if kind in ("tvs diode", "esd diode", "indicator"):
+    if kind in ("tvs diode", "esd diode", "schottky diode", "indicator"):
         return (_bar(shape, rules), *_sides(shape, rules, roomy))
     if kind == "multiplexer":
         return _multiplexer(shape, rules)

@@ -8,6 +8,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.auto.load import flare, load_case
 from lumitip_fab.derive.auto.strings import choose_resistors, choose_strings
 from lumitip_fab.derive.boards.connectors import POWER_WIRES
+from lumitip_fab.derive.boards.feed import leaves_enough
 from lumitip_fab.derive.boards.module import MOST_WIRES
 from lumitip_fab.derive.boards.packages import LEAST_RING_MM
 from lumitip_fab.derive.boards.plug_in import least_inrush_ohm
@@ -56,6 +57,7 @@ def proposals() -> tuple[Callable[[Input], Iterator[Proposal]], ...]:
         _room_of_sources,
         propose_flange,
         _flange,
+        _feed,
         _standoff,
         _interface,
         load_case,
@@ -256,3 +258,10 @@ def _flange(config: Input) -> Iterator[Proposal]:
     yield "flange.inrush_ohm", ohm, "no ringing, and a small current, as it is plugged in"
     ohm = sold_ohm(float(automatic_fields()["flange.gate_ohm"].start))
     yield "flange.gate_ohm", ohm, "as small a current as a gate needs"
+
+
+def _feed(config: Input) -> Iterator[Proposal]:
+    """No diode before the controller where that would have too little."""
+    name = str(automatic_fields()["breakout.feed_diode"].start)
+    if not leaves_enough(config, name):
+        yield "breakout.feed_diode", "none", f"behind {name} the controller would have too little"

@@ -19,6 +19,7 @@ from lumitip_fab.catalogue.controllers import Plug, Strip
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors, ties
 from lumitip_fab.derive.boards.breakout_input import board_mm, breakout_input
+from lumitip_fab.derive.boards.feed import breakout_feed
 from lumitip_fab.derive.boards.indicator import breakout_indicator
 from lumitip_fab.derive.boards.protection import breakout_protection, refuse_breakout
 from lumitip_fab.derive.boards.supply_input import FUSED, input_board, input_nets
@@ -67,7 +68,7 @@ def derive_breakout(
     box = Box(-length / 2, length / 2, -width / 2, width / 2)
     joints = _components(config, plug, strip, muxing, rows)
     cables = tuple(part for part in joints if part.kind == "wires" and part.pins)
-    pins = _places(plug, strip, _net_of(plug, muxing) | switching(config), rows)
+    pins = _places(plug, strip, _net_of(config, plug, muxing) | switching(config), rows)
     beside_mm = rows.beside_mm + PAD_MM / 2
     protecting = breakout_protection(config, muxing, cables, pins, beside_mm)
     band_mm = rows.wires_mm - connectors.WIDE[1] / 2 - beside_mm
@@ -76,11 +77,14 @@ def derive_breakout(
     marks = [(sign * (length / 2 - MARK_MM[0]), up * MARK_MM[1]) for sign, up in MARKS]
     standing = (*joints, *protecting, *light)
     entry = breakout_input(config, strings, standing, (beside_mm, rows.wires_mm), faults)
-    soldered = (*protecting, *light, *entry)
-    parts = (*joints, *soldered, *(fiducials(marks) if soldered else ()))
+    at_cameras = fiducials(marks)
+    feed = breakout_feed(config, (*standing, *entry, *at_cameras), holes, faults)
+    soldered = (*protecting, *light, *entry, *feed)
+    parts = (*joints, *soldered, *(at_cameras if soldered else ()))
     screws = [(at, p.breakout.hole_mm) for at in holes]
     emitter = connectors.emitter_signals(config)
     before = (input_nets(config)[0], FUSED) if entry else ()
+    behind = (plug.supply,) if feed else ()
     return (
         AuxiliaryBoard(
             name="breakout",
@@ -94,7 +98,7 @@ def derive_breakout(
             components=parts,
             notes=(Note("USB", (1.5 - length / 2, 0.0), 1.2, 90.0), *legend),
             supplies=tuple(
-                dict.fromkeys(("GND", connectors.REGULATED, "3V3", emitter[1], *before))
+                dict.fromkeys(("GND", connectors.REGULATED, "3V3", emitter[1], *before, *behind))
             ),
             keep_outs=(),
             hot_loop=(),
@@ -121,7 +125,7 @@ def _components(
 ) -> tuple[Component, ...]:
     nets = {
         pin: pin_net(config, muxing, net)
-        for pin, net in (_net_of(plug, muxing) | switching(config)).items()
+        for pin, net in (_net_of(config, plug, muxing) | switching(config)).items()
     }
     sockets, beside = [], []
     value, shape = config.parameters.breakout.socket, footprints.socket(strip)
@@ -158,11 +162,13 @@ def _entering(config: Input, cable: Component) -> Component:
     return replace(cable, nets=nets)
 
 
-def _net_of(plug: Plug, muxing: Muxing) -> dict[str, str]:
-    """Net of the wire of each pin that has one, and of the supplies."""
+def _net_of(config: Input, plug: Plug, muxing: Muxing) -> dict[str, str]:
+    """Net of the wire of each pin that has one, and of the supplies. Behind a diode the pin that
+    takes a supply has a net of its own, with its name."""
     nets = {pin: pin for pin in muxing.adc_pins}
     nets |= {pin: f"S{i}" for i, pin in enumerate(muxing.select_pins)}
-    return nets | {plug.ground: "GND", plug.supply: connectors.REGULATED, plug.regulated: "3V3"}
+    fed = plug.supply if config.parts.breakout.feed_diode else connectors.REGULATED
+    return nets | {plug.ground: "GND", plug.supply: fed, plug.regulated: "3V3"}
 
 
 def _places(plug: Plug, strip: Strip, nets: dict[str, str], rows: Rows) -> dict[str, Point]:

@@ -69,11 +69,11 @@ def breakout_input(
     found = input_parts(config, places, taken + 1)
     size_mm = config.parameters.breakout.board_mm
     room = all(have >= need for have, need in zip(size_mm, LEAST_BREAKOUT_MM, strict=True))
-    faults.unless(room and not _collide(found, parts), "input_room", least=LEAST_BREAKOUT_MM)
+    faults.unless(room and not collide(found, parts), "input_room", least=LEAST_BREAKOUT_MM)
     return found
 
 
-def _collide(parts: Sequence[Component], others: Sequence[Component]) -> bool:
+def collide(parts: Sequence[Component], others: Sequence[Component]) -> bool:
     """Whether pads or bodies of some parts are too near to those of others."""
     taken = [box for part in others for box in boxes_of(part)]
     return any(_near(box, other) for part in parts for box in boxes_of(part) for other in taken)

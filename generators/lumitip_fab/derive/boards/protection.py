@@ -168,11 +168,11 @@ def refuse_breakout(
         wide + GAP_MM <= half_mm + 1e-9, "series_wide", wide_mm=wide, most_mm=half_mm - GAP_MM
     )
     keep_mm = p.breakout.hole_mm / 2 + HOLE_GAP_MM
-    near = {part.ref for part in parts for hole in holes if _apart_mm(part, hole) < keep_mm}
+    near = {part.ref for part in parts for hole in holes if apart_mm(part, hole) < keep_mm}
     faults.unless(not near, "protection_near_hole", refs=", ".join(sorted(near)))
 
 
-def _apart_mm(part: Component, at: Point) -> float:
+def apart_mm(part: Component, at: Point) -> float:
     """From a place to an upright or lying part's land pattern and body."""
     shape = part.footprint
     half_x = max(abs(pad.x_mm) + pad.width_mm / 2 for pad in shape.pads)

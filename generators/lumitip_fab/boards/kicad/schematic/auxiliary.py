@@ -18,7 +18,7 @@ Parts = Sequence[Component]
 Titled = tuple[str, Draft]
 Drawing = tuple[str, Callable[[Draft], None]]
 """A title and what draws the block."""
-_LEADERS = ("fuse", "regulator", "indicator", "module", "esd diode")
+_LEADERS = ("fuse", "regulator", "indicator", "module", "esd diode", "schottky diode")
 """Kinds of parts that begin a block; the parts after them on the board's list belong to it. ESD
 diodes are in one."""
 _CABLES = {"S0": "To the receiver", "LED": "To the emitter", "D+": "USB", "DIO": "Debugger"}
@@ -110,6 +110,8 @@ def _circuit(group: Parts, parts: Parts) -> Iterator[Drawing]:
         yield "Protection of the pins", partial(draw_protection, group=group)
     elif kinds == ["indicator", "resistor"]:
         yield "Power LED", partial(power_path.draw_indicator, group=group)
+    elif kinds == ["schottky diode"]:
+        yield "Feed of the controller", partial(power_path.draw_feed, group=group)
     elif leader.kind == "module":
         yield f"Controller: {leader.value}", partial(draw_module, group=group)
     elif "SW" in leader.pins and kinds.count("inductor") == 1:

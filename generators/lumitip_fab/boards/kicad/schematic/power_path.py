@@ -198,6 +198,17 @@ def draw_indicator(draft: Draft, group: Group) -> None:
     draft.power(other_net(led, between), (x, node[1] + 2 * REACH_MM))
 
 
+def draw_feed(draft: Draft, group: Group) -> None:
+    """A diode in the way to the controller."""
+    (diode,) = group
+    (_, cathode), (_, anode) = diode.nets
+    rail = Rail(draft, (0.0, 0.0), anode)
+    rail.supply()
+    rail.on()
+    rail.through(diode)
+    draft.end(cathode, rail.end(), 1)
+
+
 def _transistor(draft: Draft, part: Component, rail: Rail, gate: str) -> Point:
     """The MOSFET in the wire, drain to the left: the place of its gate's resistors."""
     rail.on()

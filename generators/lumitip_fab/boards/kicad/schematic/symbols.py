@@ -26,6 +26,7 @@ TWO_TERMINALS = {
     "crystal": "Y",
     "tvs diode": "D",
     "esd diode": "Z",
+    "schottky diode": "VD",
     "indicator": "LED",
 }
 """Symbols of parts that are drawn upright, the first terminal at the top, or turned."""

@@ -1,0 +1,121 @@
+"""The diode between the wire that feeds the controller and the controller's pin, on the breakout.
+
+```
+from the flange   5V ──┬──►|── VIN   controller's board ──|◄── USB
+                       Z   VD1
+                      GND
+```
+
+The board joins USB to the same pin. Without the diode USB goes on over the flange's coil and the
+regulator's switch to the robot's supply, and over the wires to whatever is on it.
+"""
+
+from collections.abc import Iterator, Sequence
+
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards import connectors
+from lumitip_fab.derive.boards.breakout_input import collide
+from lumitip_fab.derive.boards.protection import HOLE_GAP_MM, apart_mm
+from lumitip_fab.derive.boards.supply_input import is_regulated
+from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.wiring.cabling import COPPER_OHM_MM2_PER_M
+from lumitip_fab.derive.wiring.ratings import SUPPLY_TOLERANCE
+from lumitip_fab.design import Component, Point
+from lumitip_fab.design.components import chip
+from lumitip_fab.design.electrical import Feed
+
+DIODE = "schottky diode"
+REF = "VD1"
+"""Pins of an Arduino are called D1, D2 …"""
+REGULATED_TOLERANCE = 0.02
+"""Of the regulator's output, assumed."""
+EDGE_MM = 1.86
+"""From the board's edge to the diode's middle: room for its body and for a track."""
+UP_MM = 2.0
+"""Its height above the middle: clear of the mark for cameras."""
+HOLE_MM = 5.0
+"""From a screw hole to the diode's middle, where it lies under the controller."""
+
+
+def derive_feed(config: Input, faults: Diagnostics) -> Feed | None:
+    """Voltages at the controller; none where no wire of a board feeds it.
+
+    Raises nothing: a diode that leaves the controller too little is reported to `faults`.
+    """
+    p, board = config.parameters, config.parts.controller.board
+    plug, diode = board.plug, config.parts.breakout.feed_diode
+    if plug is None or not p.breakout.enabled:
+        return None
+    wire_v, drop_v = _at_wire_v(config), diode.drop_v(board.draws_ma) if diode else 0.0
+    if diode:
+        left_v = wire_v - drop_v
+        faults.unless(left_v >= plug.least_v, "feed_low", left_v=left_v, least_v=plug.least_v)
+        faults.unless(board.draws_ma <= diode.rated_ma, "feed_overload", diode=diode)
+    return Feed(
+        board="breakout",
+        diode=p.breakout.feed_diode if diode else None,
+        wire=connectors.REGULATED,
+        pin=plug.supply,
+        wire_v=wire_v,
+        drawn_ma=board.draws_ma,
+        drop_v=drop_v,
+        least_v=plug.least_v,
+    )
+
+
+def leaves_enough(config: Input, name: str) -> bool:
+    """Whether the controller still works behind a diode of the catalogue."""
+    board, diode = config.parts.controller.board, config.catalogue.schottky_diodes[name]
+    if board.plug is None:
+        return True
+    return _at_wire_v(config) - diode.drop_v(board.draws_ma) >= board.plug.least_v
+
+
+def _at_wire_v(config: Input) -> float:
+    """Least voltage at the end of the wire that feeds the controller."""
+    p, ma = config.parameters, config.parts.controller.board.draws_ma
+    ohm = 2 * COPPER_OHM_MM2_PER_M * p.wiring.supply_mm / 1000 / p.wiring.section_mm2
+    if is_regulated(config):
+        low_v = config.parts.flange.regulator.output_v * (1 - REGULATED_TOLERANCE)
+    else:
+        low_v = p.supply.voltage_v * (1 - SUPPLY_TOLERANCE)
+    return low_v - ohm * ma / 1000
+
+
+def breakout_feed(
+    config: Input, parts: Sequence[Component], holes: Sequence[Point], faults: Diagnostics
+) -> tuple[Component, ...]:
+    """The diode: beside the right screw hole, and where that has no room beside it under the
+    controller; nothing where the pin is joined to the wire.
+
+    Args:
+        config: the input.
+        parts: all others of the board.
+        holes: for screws.
+        faults: where a diode without room is refused.
+    """
+    plug, diode = config.parts.controller.board.plug, config.parts.breakout.feed_diode
+    if diode is None or plug is None:
+        return ()
+    nets = plug.supply, connectors.REGULATED
+    for at, angle_deg in _places(config, holes):
+        made = chip(REF, DIODE, config.parameters.breakout.feed_diode, diode, nets, at, angle_deg)
+        if _has_room(config, made, parts, holes):
+            return (made,)
+    faults.add("feed_room")
+    return ()
+
+
+def _places(config: Input, holes: Sequence[Point]) -> Iterator[tuple[Point, float]]:
+    """Places of the diode with its angle, its cathode towards the lower row of pins."""
+    right = max(x for x, _ in holes)
+    yield (config.parameters.breakout.board_mm[0] / 2 - EDGE_MM, UP_MM), 90.0
+    yield (right - HOLE_MM, 0.0), 180.0
+    yield (HOLE_MM - right, 0.0), 180.0
+
+
+def _has_room(
+    config: Input, part: Component, others: Sequence[Component], holes: Sequence[Point]
+) -> bool:
+    away_mm = config.parameters.breakout.hole_mm / 2 + HOLE_GAP_MM
+    return all(apart_mm(part, hole) >= away_mm for hole in holes) and not collide([part], others)
