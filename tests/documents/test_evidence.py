@@ -198,13 +198,13 @@ def line(of: str) -> str:
 
 RADIO = line("firmware.md#")
 DAMAGES = {
-    "a figure changed on its page alone": ("77 frames", "78 frames", "has no 78 frames"),
+    "a figure changed on its page alone": ("100 frames", "101 frames", "has no 101 frames"),
     "a script that is gone": ("tests/firmware/test_scans.py", "tests/gone.py", "there is no"),
     "a subcommand that is gone": ("lumitip-fab spec", "lumitip-fab look", "there is no"),
     "a target that is gone": ("lumitip-fab spec design/fingertip.toml", "make it", "there is no"),
     "a word for what compares it": ("` limit", "` roughly", "is not 'not kept'"),
     "a test that reads another page": ("` limit", "` figure", "does not read this page"),
-    "no figure": ("77 frames", "frames", "no figure"),
+    "no figure": ("100 frames", "frames", "no figure"),
 }
 """Damages of the row of the firmware's page, and what is said of them."""
 
@@ -222,7 +222,7 @@ def test_rows_that_are_doubled_lost_or_moved_are_found() -> None:
     name = "firmware.md#what-runs-on-the-controller"
     assert faults(TEXT.replace(RADIO, f"{RADIO}\n{RADIO}"), PAGES) == [f"{name}: twice"]
     (lost,) = faults(TEXT.replace(f"{RADIO}\n", ""), PAGES)
-    assert lost.startswith(f"{name}: not bound: 77 frames")
+    assert lost.startswith(f"{name}: not bound: 100 frames")
     first = line("#missing-terms")
     moved = TEXT.replace(f"{first}\n", "").replace(
         "|---|---|---|---|", f"|---|---|---|---|\n{first}", 1

@@ -9,8 +9,6 @@ from lumitip_fab.boards.placement import place
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive import derive
 
-AT_LEAST = 0.94
-PULL_UPS = "YC164-FR-0716KL"  # arrays of 16 kOhm, whose number is not known
 SOLD = {
     "asymmetric": "VSMY1850",
     "dense": "APT1608F3C",
@@ -26,12 +24,11 @@ SOLD = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("preset", "led"), SOLD.items())
-def test_all_but_pull_ups_have_a_number(
+def test_every_line_has_a_number(
     inputs: dict[str, Input], vary: Callable[..., Input], preset: str, led: str
 ) -> None:
     design = derive(vary(inputs[preset], {"emitter.led": led}))
     boards = (*design.fingers, *design.auxiliary_boards)
     rows = [row for board in boards for row in bom_rows(place(design, board))]
-    without = {PULL_UPS} & {row["part"] for row in rows}
-    assert {row["part"] for row in rows if not row["lcsc"]} == without
-    assert sum(bool(row["lcsc"]) for row in rows) >= AT_LEAST * len(rows)
+    assert len(rows) > 10
+    assert {row["part"] for row in rows if not row["lcsc"]} == set()

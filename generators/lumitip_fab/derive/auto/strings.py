@@ -17,7 +17,10 @@ from lumitip_fab.derive.wiring.strings import (
 )
 
 CURRENT_STEP = 0.95  # from one current that is tried to the next
-SATURATION_MARGIN = 1.5  # light current at a bare cell, times what saturates its pull-up
+FULL_SHARE = 0.95
+"""Of the current that saturates a pull-up, what a bare cell takes at least by the catalogue. More
+would hide what dims a cell by less than the rest."""
+OFF_SHARE = 0.05  # that a value which is sold may be off
 MOST_PULL_UP_OHM = 150e3  # a channel settles that much slower
 SHARED_OHM = 75e3  # the published one
 
@@ -106,10 +109,6 @@ def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
             f"less than {full:g} mA: {len(strings)} strings from {volts:g} V keep to "
             f"supply.max_ma, emitter.max_heat_w = {p.emitter.max_heat_w:g} and the ratings"
         )
-    if "receiver.pull_up_ohm" not in config.automatic and p.emitter.current_ma < _least_ma(
-        config, p.receiver.pull_up_ohm
-    ):
-        reason += "; a bare cell just saturates its pull-up, without a margin"
     yield "emitter.current_ma", p.emitter.current_ma, reason
     yield (
         "emitter.string_leds",
@@ -128,11 +127,11 @@ def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
     )
     factor = _least_ma(config, start) / p.emitter.current_ma
     ohm = start if factor <= 1 else sold_ohm(min(start * factor, MOST_PULL_UP_OHM))
-    reason = f"a bare cell saturates it at {p.emitter.current_ma:g} mA"
-    if p.emitter.current_ma * SATURATION_MARGIN < _least_ma(config, ohm):
+    reason = f"a bare cell uses nearly all of its range at {p.emitter.current_ma:g} mA"
+    if p.emitter.current_ma < (1 - OFF_SHARE) * _least_ma(config, ohm):
         reason = (
             f"with more than {MOST_PULL_UP_OHM:g} a channel settles too slowly; at "
-            f"{p.emitter.current_ma:g} mA a bare cell does not saturate it"
+            f"{p.emitter.current_ma:g} mA a bare cell uses a part of its range"
         )
     yield "receiver.pull_up_ohm", ohm, reason
 
@@ -152,23 +151,22 @@ def _currents(config: Input) -> Iterator[float]:
 
 
 def least_current_ma(config: Input) -> float:
-    """LED current with which a bare cell just saturates. Currents are tried from the largest down,
-    so that the margin is given up only where supply or heat leaves no more."""
-    ohm = config.parameters.receiver.pull_up_ohm
-    if "receiver.pull_up_ohm" in config.automatic:
-        ohm = MOST_PULL_UP_OHM
-    return _least_ma(config, ohm) / SATURATION_MARGIN
+    """LED current with which a bare cell uses nearly all of its range."""
+    automatic = "receiver.pull_up_ohm" in config.automatic
+    return _least_ma(
+        config, MOST_PULL_UP_OHM if automatic else config.parameters.receiver.pull_up_ohm
+    )
 
 
 def lowest_ma(config: Input) -> float:
     """Lowest current that a search may choose; 0 where the file sets the current."""
     if "emitter.current_ma" not in config.automatic:
         return 0.0
-    return _least_ma(config, config.parameters.receiver.pull_up_ohm) / SATURATION_MARGIN
+    return _least_ma(config, config.parameters.receiver.pull_up_ohm)
 
 
 def _least_ma(config: Input, ohm: float) -> float:
-    """LED current with which a bare cell saturates a pull-up, with a margin.
+    """LED current with which a bare cell takes `FULL_SHARE` of what saturates a pull-up.
 
     The catalogue's `light_current_ua` is for the published current.
     """
@@ -177,7 +175,7 @@ def _least_ma(config: Input, ohm: float) -> float:
     supply_v = parts.controllers[p.controller.board].supply_v
     saturated_ua = 1e6 * (supply_v - detector.saturation_v) / ohm
     full = float(automatic_fields()["emitter.current_ma"].start)
-    return full * SATURATION_MARGIN * saturated_ua / detector.light_current_ua
+    return full * FULL_SHARE * saturated_ua / detector.light_current_ua
 
 
 def _resistors(config: Input) -> Iterator[str]:
