@@ -1,5 +1,6 @@
 """The parts' 3D models: KiCad finds each where the layout has its part, and damage is found."""
 
+import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -144,6 +145,18 @@ def cut_short(folder: Path) -> None:
     (folder / "boards/models/RESC1608X50N.step").write_text("ISO-10303-21;")
 
 
+def vrml_lost(folder: Path) -> None:
+    (folder / "boards/models/RESC1608X50N.wrl").unlink()
+
+
+def vrml_in_mm(folder: Path) -> None:
+    """As other programs write it: KiCad shows the part 2.54 times as large."""
+    path = folder / "boards/models/RESC1608X50N.wrl"
+    points = re.compile(r"-?\d+\.\d{3,}")
+    text = points.sub(lambda m: f"{2.54 * float(m[0]):.5f}", path.read_text())
+    path.write_text(text)
+
+
 def _board(old: str, new: str) -> Callable[[Path], None]:
     return lambda folder: edit(folder / "boards/flange/flange.kicad_pcb", old, new)
 
@@ -152,6 +165,8 @@ DAMAGES: dict[str, tuple[Callable[[Path], None], set[str]]] = {
     "file lost": (lost, {"files"}),
     "another's model": (of_another, {"size"}),
     "file cut short": (cut_short, {"size"}),
+    "VRML lost": (vrml_lost, {"vrml"}),
+    "VRML in mm": (vrml_in_mm, {"vrml"}),
     "model turned": (_board("(rotate (xyz 0 0 0))", "(rotate (xyz 0 0 180))"), {"places"}),
     "model shifted": (_board("(offset (xyz 0 0 0))", "(offset (xyz 1 0 0))"), {"places"}),
     "model in inches": (_board("(scale (xyz 1 1 1))", "(scale (xyz 2.54 2.54 2.54))"), {"places"}),

@@ -7,7 +7,7 @@ import numpy as np
 
 from lumitip_fab.checks.board_read import names_of, path_of, read_any
 from lumitip_fab.checks.readers.kicad_board import Model
-from lumitip_fab.checks.readers.vertices import step_mm
+from lumitip_fab.checks.readers.vertices import step_mm, vrml_mm
 from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Box, Design, Footprint, footprints
 from lumitip_fab.errors import OutputError
@@ -44,7 +44,10 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         for check, wrong in (("files", lost), ("places", turned)):
             yield count(f"models.{check}", read.subject, wrong, "parts")
     for path, shape in sorted(sizes.items()):
-        yield _size(path, path.relative_to(outputs.resolve()).as_posix(), shape)
+        subject = path.relative_to(outputs.resolve())
+        yield _size("size", path, subject, shape)
+        drawn, same = path.with_suffix(".wrl"), subject.with_suffix(".wrl")
+        yield _size("vrml", drawn, same, shape)
 
 
 def _path(outputs: Path, board: str, models: tuple[Model, ...]) -> Path | None:
@@ -61,18 +64,20 @@ def _straight(model: Model) -> bool:
     return model.offset_mm == model.rotate_deg == _STRAIGHT and model.scale == _WHOLE
 
 
-def _size(path: Path, subject: str, shape: Footprint) -> Measurement:
+def _size(check: str, path: Path, subject: Path, shape: Footprint) -> Measurement:
     """How far the sides and the top of a model are from the body's."""
     try:
-        corners = step_mm(path)
+        corners = vrml_mm(path) if check == "vrml" else step_mm(path)
     except OutputError as error:
-        return unreadable("models.size", subject, str(error))
+        return unreadable(f"models.{check}", subject.as_posix(), str(error))
     box = _seen(shape)
     wanted = np.array([*box.bounds_mm, shape.height_mm])
     low, high = corners.min(axis=0), corners.max(axis=0)
     off = np.abs(np.array([*low[:2], *high]) - wanted)
     note = f"from {box.width_mm:g} x {box.length_mm:g} x {shape.height_mm:g} mm"
-    return Measurement("models.size", subject, float(off.max()), 0, SIZE_MM, "mm", note)
+    return Measurement(
+        f"models.{check}", subject.as_posix(), float(off.max()), 0, SIZE_MM, "mm", note
+    )
 
 
 def _seen(shape: Footprint) -> Box:

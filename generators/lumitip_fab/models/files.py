@@ -1,4 +1,4 @@
-"""STEP files of all packages: what the boards' files refer to."""
+"""STEP files of all packages, to which the boards' files refer, and the same as VRML."""
 
 from collections.abc import Iterable, Iterator
 
@@ -9,6 +9,7 @@ from lumitip_fab.design.pcb import MODELS
 from lumitip_fab.errors import BuildError
 from lumitip_fab.models import connectors, shapes
 from lumitip_fab.models.shapes import Named
+from lumitip_fab.models.vrml import vrml
 from lumitip_fab.parts import export
 from lumitip_fab.pipeline.artefact import Artefact
 
@@ -17,14 +18,15 @@ _Held = tuple[str, Footprint]
 
 
 def model_files(design: Design) -> tuple[Artefact, ...]:
-    """A STEP file for each package, in its footprint's frame: z up from the board.
+    """A STEP and a VRML file for each package, in its footprint's frame: z up from the board.
 
     Raises:
         BuildError: if two packages of one name have bodies of different sizes.
     """
     return tuple(
-        Artefact(f"{MODELS}/{shape.model}", _step(kind, shape), frame="")
+        Artefact(f"{MODELS}/{name}", data, frame="")
         for kind, shape in _different(footprints.of_design(design))
+        for name, data in _written(kind, shape)
     )
 
 
@@ -49,7 +51,8 @@ def _size(shape: Footprint) -> str:
     return f"{body.width_mm:g} x {body.length_mm:g} x {shape.height_mm:g}"
 
 
-def _step(kind: str, shape: Footprint) -> bytes:
+def _written(kind: str, shape: Footprint) -> Iterator[tuple[str, bytes]]:
+    """Name and bytes of both files of a package."""
     makers = {
         "chip": lambda: shapes.chip(kind, shape),
         "array": lambda: shapes.array(shape),
@@ -62,4 +65,6 @@ def _step(kind: str, shape: Footprint) -> bytes:
     }
     bodies: tuple[Named, ...] = makers[shape.form]()
     name = shape.model.removesuffix(".step")
-    return export.step(Compound(children=[body.shape() for body in bodies]), name)
+    whole = Compound(children=[body.shape() for body in bodies])
+    yield shape.model, export.step(whole, name)
+    yield f"{name}.wrl", vrml(bodies)
