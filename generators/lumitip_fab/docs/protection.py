@@ -1,5 +1,6 @@
 """The parts that protect controller and supply, as the manual has them where a design has them."""
 
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from string import ascii_letters, digits
 
@@ -7,19 +8,22 @@ from lumitip_fab.design import AuxiliaryBoard, Component, Design
 from lumitip_fab.docs.wiring import listed
 from lumitip_fab.text import passage
 
-ESD, TVS, FUSE = "esd diode", "tvs diode", "fuse"
+ESD, TVS, FUSE, MOSFET = "esd diode", "tvs diode", "fuse", "transistor"
+SCHOTTKY = "schottky diode"
 
 
 def protection_note(design: Design) -> str:
-    """Paragraphs on ESD diodes with their resistors, and on the TVS diode with its fuse; empty
-    without any."""
+    """Paragraphs on ESD diodes with their resistors, on the TVS diode with its fuse, and on the
+    diode before the controller; empty without any."""
     return "".join(
         f"\n\n{text}" for board in design.auxiliary_boards for text in _of(board, design)
     )
 
 
 def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
-    kinds = {kind: [c for c in board.components if c.kind == kind] for kind in (ESD, TVS, FUSE)}
+    kinds: dict[str, list[Component]] = defaultdict(list)
+    for part in board.components:
+        kinds[part.kind].append(part)
     if diodes := kinds[ESD]:
         lines = {net for diode in diodes for _, net in diode.nets} - {*board.supplies}
         held = [
@@ -34,7 +38,26 @@ def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
         # The flange's board has a test of its own, after that of the fingers if they are not on it.
         later = board.name == "flange" and len(design.auxiliary_boards) > 1
         where = 'its test (step "Flange")' if later else "the first test"
-        yield _text("protected_tvs", board=board.name, part=part, melts=melts, where=where)
+        ends = "".join(_text("protected_reversed", part=mosfet) for mosfet in kinds[MOSFET])
+        yield _text(
+            "protected_tvs", board=board.name, part=part, melts=melts, where=where, reversed=ends
+        )
+    yield from _fed(board, design, kinds[SCHOTTKY])
+
+
+def _fed(board: AuxiliaryBoard, design: Design, diodes: Sequence[Component]) -> Iterator[str]:
+    """The diode before the controller, and the names of the pads at its ends."""
+    feed = design.electrical.feed
+    for part in diodes:
+        assert feed is not None
+        (_, behind), (_, before) = part.nets
+        ends = {
+            net: next(
+                d.ref for d in board.components if d.kind == kind and net in dict(d.nets).values()
+            )
+            for net, kind in ((before, "wires"), (behind, "socket"))
+        }
+        yield _text("protected_feed", feed=feed, part=part, cable=ends[before], socket=ends[behind])
 
 
 def _references(parts: Sequence[Component]) -> str:
