@@ -38,7 +38,10 @@ def _breakout(design: Design) -> AuxiliaryBoard:
 @pytest.fixture(scope="module")
 def built(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The breakout of the default design, with its design."""
-    folder, design = tmp_path_factory.mktemp("fed"), _design(design_dir)
+    return _built(_design(design_dir), tmp_path_factory.mktemp("fed"))
+
+
+def _built(design: Design, folder: Path) -> Path:
     (folder / "design.json").write_text(design_text(design), encoding="utf-8")
     for made in board_files(design, _breakout(design)):
         path = folder / made.path
@@ -69,6 +72,18 @@ def test_a_damaged_diode_is_found(built: Path, tmp_path: Path, damage: Damage) -
     path.write_text(damage(path.read_text(encoding="utf-8")), encoding="utf-8")
     found = board.measure_board(folder, read_design(folder / "design.json"), "breakout")
     assert "board.feed" in {m.check for m in found if not m.passed}
+
+
+def test_a_wire_that_does_not_reach_the_pin_is_found(design_dir: Path, tmp_path: Path) -> None:
+    """Without the diode: the pads of the cable's 24 V and 5 V exchanged."""
+    folder = _built(_design(design_dir, breakout__feed_diode="none"), tmp_path)
+    design = read_design(folder / "design.json")
+    found = {m.check: m.passed for m in board.measure_board(folder, design, "breakout")}
+    assert found["board.feed"] and "board.feed_voltage" not in found
+    path = folder / BREAKOUT
+    path.write_text(swapped_pads(path.read_text(encoding="utf-8"), "J7", "2", "3"))
+    found = {m.check: m.passed for m in board.measure_board(folder, design, "breakout")}
+    assert not found["board.feed"]
 
 
 LOW = """extends = "fingertip.toml"
