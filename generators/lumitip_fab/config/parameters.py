@@ -12,9 +12,10 @@
    |_|__notch__|_|       gripper end
 """
 
+import datetime
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from lumitip_fab.catalogue.record import Name, Strict
 from lumitip_fab.config import sections
@@ -254,6 +255,13 @@ class Printer(Strict):
     sits looser (mm)."""
 
 
+def _in_calendar(date: str) -> str:
+    try:
+        return date and datetime.date.fromisoformat(date).isoformat()
+    except ValueError:
+        raise ValueError(f"is {date!r}; the calendar has no such day") from None
+
+
 class Parameters(Strict):
     """A whole parameter file."""
 
@@ -262,7 +270,7 @@ class Parameters(Strict):
     letters."""
     revision: Annotated[str, Field(pattern=REVISION)]
     """Revision of the design, on boards and drawings."""
-    date: Annotated[str, Field(pattern=DATE)]
+    date: Annotated[str, Field(pattern=DATE), AfterValidator(_in_calendar)]
     """Date of the revision, such as "2026-11-28", in the title blocks of boards and schematics;
     empty for none. It is yours to change: the same file gives the same bytes on each day."""
     grid: Grid
