@@ -11,6 +11,7 @@ import sys
 TYPE_CHECKING = False  # `typing` is slow to import
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from types import FrameType, TracebackType
     from typing import Any
 
@@ -123,9 +124,13 @@ class InterruptsHeld:
 
     A context manager for the main thread; on other threads it does nothing. Blocking the signal is
     not enough: threads of numpy's library may take it, and Python then raises in the main thread.
+
+    Args:
+        end: called when it comes, to end the block early.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, end: "Callable[[], None] | None" = None) -> None:
+        self._end = end
         self._came = False
         self._before: Any = None
 
@@ -145,6 +150,8 @@ class InterruptsHeld:
 
     def _keep(self, _: int, __: "FrameType | None") -> None:
         self._came = True
+        if self._end:
+            self._end()
 
 
 def _interrupt_again() -> None:

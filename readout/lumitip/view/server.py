@@ -18,6 +18,7 @@ from starlette.responses import PlainTextResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from lumitip.errors import ViewError
+from lumitip.interrupt import InterruptsHeld
 from lumitip.links.occupant import listen_or_explain
 from lumitip.listening import is_loopback, is_token, public_host, server_token
 from lumitip.view.app import make_app
@@ -83,7 +84,8 @@ class ViewServer:
 
     def run(self) -> None:
         """Serve until a signal or `stop`."""
-        with self._socket:
+        # The server handles SIGINT itself, but not before its loop runs.
+        with self._socket, InterruptsHeld(self.stop):
             self._server.run(sockets=[self._socket])
 
     def stop(self) -> None:

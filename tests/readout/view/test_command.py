@@ -56,6 +56,32 @@ def test_two_words_show_a_demonstration_and_ctrl_c_ends_it(tmp_path: Path) -> No
     assert reader.metadata.device_id == "twin:demo"
 
 
+def test_ctrl_c_before_the_server_listens_to_signals_ends_it_in_silence(tmp_path: Path) -> None:
+    program = """
+import os, signal, uvicorn
+from lumitip import cli
+
+find = uvicorn.Config.get_loop_factory
+
+def find_and_interrupt(config):
+    os.kill(os.getpid(), signal.SIGINT)
+    return find(config)
+
+uvicorn.Config.get_loop_factory = find_and_interrupt
+cli.run()
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program, "view", "twin://demo", "--port", "0"],
+        cwd=tmp_path,
+        env=os.environ | {"XDG_DATA_HOME": str(tmp_path / "data")},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (130, "")
+
+
 def taken(port: int, capsys: pytest.CaptureFixture[str]) -> str:
     """The message of the command that this port is taken, without its beginning."""
     assert main(["view", "twin://demo", "--port", str(port)]) == 2
