@@ -1,7 +1,11 @@
 """`lumitip accept`: a builder's protocol for a finished pair of fingers, and its report."""
 
 import argparse
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import datetime
+from pathlib import Path
 
 import numpy as np
 
@@ -14,6 +18,7 @@ from lumitip.commands.common import open_fingertip
 from lumitip.errors import LumitipError
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Frame, Values, complement
+from lumitip.interrupt import InterruptsHeld
 from lumitip.recording.metadata import versions
 
 NOT_ACCEPTED = 1
@@ -47,25 +52,40 @@ def run(options: argparse.Namespace) -> int:
         reference = None
         if options.reference:
             reference = mean_deviations(options.reference, layout.design_hash)
-        try:
+        with _writing(options.out):
             prepare(options.out)
+        try:
             frames = _protocol(tip, gauge, judge, options)
             judged = judge(frames, reference, thicker_mm)
             circumstances = Circumstances(
                 device_id, began, gauge.sha256, versions(), reference, thicker_mm
             )
-            written = write(options.out, frames, judged, layout, circumstances)
-        except OSError as error:
-            raise LumitipError(f"{options.out}: the report cannot be written: {error}") from error
-    _print(judged)
-    if thicker_mm is None:
-        print("  thickness of the silicone was not judged: measure it, and use --thicker-mm")
-    print(f"report: {written[0]}")
-    if judged.accepted:
-        blank = Calibration(device_id, layout.design_hash)
-        blank.measured("dark", frames.sheet).measured("empty", frames.empty).save()
-        print("both references of its cells are saved, as `lumitip tare` saves them")
+        except KeyboardInterrupt:
+            print("\nended before the verdict: no report and no reference is saved", flush=True)
+            raise
+        with InterruptsHeld():  # from here on all of it is kept
+            with _writing(options.out):
+                written = write(options.out, frames, judged, layout, circumstances)
+            _print(judged)
+            if thicker_mm is None:
+                print("  thickness of the silicone was not judged: measure it, use --thicker-mm")
+            print(f"report: {written[0]}")
+            if judged.accepted:
+                blank = Calibration(device_id, layout.design_hash)
+                blank.measured("dark", frames.sheet).measured("empty", frames.empty).save()
+                print("both references of its cells are saved, as `lumitip tare` saves them")
+            sys.stdout.flush()
     return 0 if judged.accepted else NOT_ACCEPTED
+
+
+@contextmanager
+def _writing(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise LumitipError(
+            f"{folder}: the report cannot be written: {error}. Choose another folder with --out"
+        ) from error
 
 
 def _protocol(tip: Fingertip, gauge: Gauge, judge: Judge, options: argparse.Namespace) -> Frames:

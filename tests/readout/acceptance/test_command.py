@@ -2,6 +2,10 @@
 
 import hashlib
 import json
+import os
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -173,6 +177,55 @@ def test_without_a_keyboard_nothing_is_written(
     assert main(arguments(gauge_file, tmp_path / "out")) == 2
     assert "run it in a terminal" in capsys.readouterr().err
     assert not list((tmp_path / "out").iterdir())
+
+
+@pytest.mark.parametrize("entered", [0, 2])
+def test_ctrl_c_at_a_step_ends_it_and_leaves_no_file(
+    gauge_file: Path, tmp_path: Path, entered: int
+) -> None:
+    command = [sys.executable, "-m", "lumitip.cli", *arguments(gauge_file, tmp_path / "out")]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, text=True) as process:
+        try:
+            assert process.stdin and process.stdout
+            printed = ""
+            for step in range(entered + 1):
+                while not printed.endswith("press Enter: "):
+                    letter = process.stdout.read(1)
+                    assert letter, process.communicate()
+                    printed += letter
+                if step < entered:
+                    process.stdin.write("\n")
+                    process.stdin.flush()
+                    printed = ""
+            assert printed.splitlines()[-1].startswith(f"{entered + 1} of 7: ")
+            process.send_signal(signal.SIGINT)
+            rest, errors = process.communicate(timeout=60)
+        finally:
+            process.kill()
+    assert (process.returncode, errors) == (130, "")
+    assert rest == "\nended before the verdict: no report and no reference is saved\n"
+    assert not list((tmp_path / "out").iterdir())
+    assert not list(tmp_path.glob("data/**/*.json"))
+
+
+def test_ctrl_c_while_the_report_is_written_leaves_it_whole(
+    gauge_file: Path, tmp_path: Path, bench: Bench, monkeypatch, capsys
+) -> None:
+    hands = Hands(monkeypatch, bench)
+    hands._states = [np.tile([[0.0], [1.0]], (50, len(LAYOUT)))] * 9
+    replace = Path.replace
+
+    def interrupted(file: Path, target: Path) -> Path:
+        os.kill(os.getpid(), signal.SIGINT)
+        return replace(file, target)
+
+    monkeypatch.setattr(Path, "replace", interrupted)
+    out = tmp_path / "out"
+    assert main(arguments(gauge_file, out)) == 130
+    names = ["acceptance.html", "acceptance.json", "frames.npz"]
+    assert sorted(file.name for file in out.iterdir()) == names
+    assert f"report: {out / names[0]}" in capsys.readouterr().out.splitlines()
 
 
 def test_an_output_folder_that_is_a_file_is_refused_before_the_first_step(
