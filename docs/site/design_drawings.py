@@ -4,6 +4,7 @@ Every point is one of the derived design; a test compares each length with its p
 """
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -49,7 +50,7 @@ def paint_face(axes: Axes, design: Design, holes: bool = True) -> None:
         axes.add_patch(RegularPolygon(at, 48, radius=radius, fc="white", ec="#3c6e3a", lw=0.8))
 
 
-def _rectangle(box: Box, **look: object) -> Rectangle:
+def _rectangle(box: Box, **look: Any) -> Rectangle:
     return Rectangle((box.x_min_mm, box.y_min_mm), box.width_mm, box.length_mm, **look)
 
 

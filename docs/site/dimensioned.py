@@ -3,6 +3,7 @@
 import io
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
@@ -10,7 +11,8 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 Point = tuple[float, float]
-_INK, _THIN = "#b0431e", {"color": "#b0431e", "lw": 0.7}
+_INK = "#b0431e"
+_THIN: dict[str, Any] = {"color": _INK, "lw": 0.7}
 
 
 @dataclass(frozen=True)
