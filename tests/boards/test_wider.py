@@ -59,6 +59,11 @@ def test_a_track_is_narrow_only_where_it_must_be() -> None:
     assert widened(Via("B", 0.0, 3.63, 0.6, 0.3)) == widened()
 
 
+def test_a_track_without_length_stays() -> None:
+    dot = Track("A", "front", (0.0, 3.0), (0.0, 3.0), 0.2)
+    assert widened(dot) == [dataclasses.replace(ALONG, width_mm=WIDE_MM), dot]
+
+
 def test_a_wide_track_leaves_its_neighbour_narrow() -> None:
     """Between them is room for one of the two."""
     beside = Track("B", "front", (-4.0, 3.43), (4.0, 3.43), 0.2)

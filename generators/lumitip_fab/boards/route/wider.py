@@ -35,7 +35,7 @@ def with_wider_tracks(placement: Placement, routing: Routing) -> Routing:
     """
     room = _Room(placement, routing)
     pieces = [[track] for track in routing.tracks]
-    narrow = [parts for parts in pieces if parts[0].width_mm < WIDE_MM]
+    narrow = [p for p in pieces if p[0].width_mm < WIDE_MM and p[0].start != p[0].end]
     for parts in sorted(narrow, key=lambda p: (p[0].net == placement.ground, -_length_mm(p[0]))):
         parts[:] = _cut(parts[0], room.free(parts[0]))
         for piece in parts:
