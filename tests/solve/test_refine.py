@@ -32,8 +32,11 @@ MakeTask = Callable[..., Task]
 class Bowl:
     """Judges whose error is least at 3.3 mm and 2.1 mm; a larger hole is dearer."""
 
-    def __init__(self, task: Task, refused_from_mm: float = 9.0, price: float = 1.0) -> None:
+    def __init__(
+        self, task: Task, refused_from_mm: float = 9.0, price: float = 1.0, least: float = 1.0
+    ) -> None:
         self._task, self._refused_from_mm, self._price = task, refused_from_mm, price
+        self._least = least
         self.designs: dict[Point, Judged] = {}
 
     def __call__(self, points: Sequence[Point]) -> list[Judged]:
@@ -49,7 +52,7 @@ class Bowl:
         if hole_mm >= self._refused_from_mm:
             return Judged(changes, columns, {}, ("too large",), 10.0)
         error = 1.0 + (hole_mm - 3.3) ** 2 + 3.0 * (silicone_mm - 2.1) ** 2
-        error -= DEEPER * (columns[0] == 4)
+        error = self._least * (error - DEEPER * (columns[0] == 4))
         cost = self._price * (40.0 + hole_mm)
         figures = {"error": error, "cost": cost, "current_ma": 10.0}
         excess = sum(max(share, 0.0) for share in excesses(figures, self._task.limits).values())
@@ -87,12 +90,13 @@ def test_it_ends_on_a_limit(make: MakeTask) -> None:
     assert _refined(Bowl(task), task)["mask.hole_mm"] == pytest.approx(2.5, abs=0.051)
 
 
-def test_refused_designs_do_not_stop_it(make: MakeTask) -> None:
+@pytest.mark.parametrize("least", [1.0, 20.0])
+def test_refused_designs_do_not_stop_it(make: MakeTask, least: float) -> None:
     task = make()
-    bowl = Bowl(task, refused_from_mm=3.0)
+    bowl = Bowl(task, refused_from_mm=3.0, least=least)
     bowl([(0, 1, 1)])
     refine(task, bowl.designs, bowl, 60)
-    assert front(bowl.designs.values())[0].figures["error"] < 1.5
+    assert front(bowl.designs.values())[0].figures["error"] < 1.5 * least
 
 
 def test_designs_that_cost_nothing_have_no_limit_of_their_own(make: MakeTask) -> None:

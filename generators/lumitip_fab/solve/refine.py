@@ -20,7 +20,7 @@ _ITERATIONS = 8
 _LEAST_GAIN = 1e-3
 """Of the error, in an iteration; with less the refinement of a start ends."""
 _REFUSED = 10.0
-"""Error, and excess over each limit, of a design that is refused."""
+"""Error of a design that is refused, in that of the start; and its excess over each limit."""
 Judges = Callable[[Sequence[Point]], list[Judged]]
 
 
@@ -140,8 +140,9 @@ class _Descent:
     def _figures(self, one: Judged) -> Floats:
         """The error, and how far each limit is kept; below 0 beyond it."""
         if not one.figures:
-            named = excesses(self._designs[self._start].figures, self._limits)
-            return np.array([_REFUSED, *[-_REFUSED] * len(named)])
+            start = self._designs[self._start].figures
+            named = excesses(start, self._limits)
+            return np.array([_REFUSED * start["error"], *[-_REFUSED] * len(named)])
         over = excesses(one.figures, self._limits).values()
         return np.array([one.figures["error"], *(-share for share in over)])
 
