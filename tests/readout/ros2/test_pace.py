@@ -117,6 +117,33 @@ def test_few_frames_wait_for_work_that_hangs(ros: Any) -> None:
     assert done == [0, 29] and published.skipped == 28
 
 
+@pytest.mark.parametrize("every", [True, False])
+def test_nothing_is_worked_on_and_nothing_waits_after_the_end(ros: Any, every: bool) -> None:
+    free, begun, done = threading.Event(), threading.Event(), []
+
+    def work(frame: Any, _: float) -> None:
+        begun.set()
+        free.wait(10.0)
+        done.append(frame)
+
+    pace = ros.Pace(work, every, ros.Published())
+    pace.put(0)
+    assert begun.wait(5.0)
+    pace.put(1)
+    putting = threading.Thread(target=pace.put, args=(2,), daemon=True)
+    putting.start()  # waits for room where every frame counts
+    ending = threading.Thread(target=pace.stop, daemon=True)
+    ending.start()
+    putting.join(5.0)
+    assert not putting.is_alive() and ending.is_alive(), "it waits for the frame in work"
+    free.set()
+    ending.join(5.0)
+    assert not ending.is_alive() and not alive()
+    pace.put(3)
+    pace.stop()
+    assert done == [0] and not pace._waiting
+
+
 def test_diagnostics_see_a_node_that_hangs(
     make_node: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -50,10 +50,12 @@ class Pace:
         self._thread.start()
 
     def put(self, frame: Frame) -> None:
-        """Add a frame that has just arrived."""
+        """Add a frame that has just arrived; after `stop` it is discarded."""
         with self._changed:
             while self._every and self._waiting and not self._stopped:
                 self._changed.wait()
+            if self._stopped:
+                return
             self._waiting.append((frame, time.monotonic()))
             self._skip()  # here too: the queue stays short while `work` hangs
             self._changed.notify_all()
@@ -62,6 +64,7 @@ class Pace:
         """Discard the waiting frames and end the thread, after the frame that it works on."""
         with self._changed:
             self._stopped = True
+            self._waiting.clear()
             self._changed.notify_all()
         self._thread.join()
 
