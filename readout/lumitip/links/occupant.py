@@ -8,7 +8,7 @@ from lumitip.errors import AccessRefused, LinkError, LumitipError
 from lumitip.links.tcp import Address, greeting_of
 from lumitip.listening import listen
 
-_ANSWER_S = 2.0
+_ANSWER_S = 1.25  # on this computer; asked twice
 _PAGE_BYTES = 4096  # enough for the title of the live view's page
 
 
@@ -32,7 +32,7 @@ def _occupant(address: Address) -> str:
     """Who listens at an address, and what to do, for the user."""
     other = "choose another --port; port 0 is any free one"
     try:
-        device = greeting_of(address).device_id
+        device = greeting_of(address, _ANSWER_S).device_id
     except AccessRefused:
         return f"`lumitip serve` listens there. Open the address that it has printed, or {other}"
     except LinkError:

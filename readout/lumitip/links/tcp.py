@@ -66,17 +66,24 @@ class Greeting:
 class Connection:
     """A connection to a server; a context manager.
 
+    Args:
+        address: of the server.
+        stopping: ends the connection when it is set.
+        answer_s: longest wait for the server, and then for its greeting.
+
     Raises:
         NotConnected: if there is no server.
         AccessRefused: if it refuses this client.
     """
 
-    def __init__(self, address: Address, stopping: threading.Event) -> None:
+    def __init__(
+        self, address: Address, stopping: threading.Event, answer_s: float = _CONNECT_S
+    ) -> None:
         self._address = address
         self._stopping = stopping
         self._decoder = MessageDecoder()
         try:
-            self._socket = socket.create_connection((address.host, address.port), _CONNECT_S)
+            self._socket = socket.create_connection((address.host, address.port), answer_s)
         except OSError as error:
             raise NotConnected(
                 f"{address}: {error.strerror or error}. Is `lumitip serve` running there?"
@@ -85,7 +92,7 @@ class Connection:
             self._socket.settimeout(_WAIT_S)
             self._socket.sendall(messages.encode_request(address.token))
             self._received = self._receive()
-            self.greeting = self._greeted()
+            self.greeting = self._greeted(answer_s)
         except BaseException as error:
             self._socket.close()
             if isinstance(error, OSError) and not isinstance(error, NotConnected):
@@ -125,8 +132,8 @@ class Connection:
             for kind, payload in found:
                 yield t_host, kind, payload
 
-    def _greeted(self) -> Greeting:
-        until = time.monotonic() + _CONNECT_S
+    def _greeted(self, answer_s: float) -> Greeting:
+        until = time.monotonic() + answer_s
         for message in self._received:
             if message is None:
                 if time.monotonic() > until:
@@ -234,14 +241,18 @@ def _fault(record: dict[str, Any]) -> Fault:
     )
 
 
-def greeting_of(address: Address) -> Greeting:
+def greeting_of(address: Address, answer_s: float = _CONNECT_S) -> Greeting:
     """Ask a server for its device.
+
+    Args:
+        address: of the server.
+        answer_s: longest wait for the server, and then for its greeting.
 
     Raises:
         NotConnected: if there is no server.
         AccessRefused: if it refuses this client.
     """
-    with Connection(address, threading.Event()) as connection:
+    with Connection(address, threading.Event(), answer_s) as connection:
         return connection.greeting
 
 
