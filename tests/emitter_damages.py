@@ -6,6 +6,7 @@ from board_damages import (
     TIE_DAMAGES,
     in_part,
     moved_part,
+    once,
     resistor_smaller,
     swapped_pads,
     unrated,
@@ -66,6 +67,26 @@ def reference_twice(text: str) -> str:
     return in_part(text, "FID3", "FID3", "FID2")
 
 
+def revision_in_the_title_block(text: str) -> str:
+    return once(text, r'(\(rev "[^"]*)"', r'\g<1>0"')
+
+
+def date_in_the_title_block(text: str) -> str:
+    return once(text, r'\(date "[^"]*"\)', '(date "2019-01-01")')
+
+
+def design_in_the_title_block(text: str) -> str:
+    return once(text, r"Design [0-9a-f]{8}", "Design 00000000")
+
+
+def board_in_the_title_block(text: str) -> str:
+    return once(text, "emitter board, seen", "receiver board, seen")
+
+
+def title_block_lost(text: str) -> str:
+    return once(text, r"\(title_block", "(title_blocks")
+
+
 EMITTER_DAMAGES: dict[Damage, set[str]] = {
     led_moved: {"cells", "clearance"},  # the pour is as near as it may be
     led_on_the_back: {"cells", "room_behind", "silk_marks"},
@@ -94,4 +115,9 @@ EMITTER_DAMAGES: dict[Damage, set[str]] = {
     fiducials_near: {"fiducial_spread"},
     probe_lost: {"test_points", "silk_labels"},
     reference_twice: {"references"},
+    revision_in_the_title_block: {"title_block"},
+    date_in_the_title_block: {"title_block"},
+    design_in_the_title_block: {"title_block"},
+    board_in_the_title_block: {"title_block"},
+    title_block_lost: {"title_block"},
 }

@@ -240,6 +240,7 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
         lambda t, _: moved_part(t, "FID1", -0.5, 0.0),
         {"fiducial_edge", "fiducial_opening"},
     ),
+    "other revision": (lambda t, _: t.replace('(rev "', '(rev "0'), {"title_block"}),
     "four fiducials": (mark_added, {"fiducial_turn", "fiducial_opening"}),
 }
 

@@ -11,7 +11,7 @@ from lumitip_fab.design.encoding import read_design
 
 pytestmark = pytest.mark.slow
 
-CHECKS = ["schematic.parts", "schematic.fields", "schematic.pins", "schematic.nets"]
+CHECKS = [f"schematic.{name}" for name in ("parts", "fields", "pins", "nets", "title_block")]
 
 
 def _failed(out: Path) -> dict[str, str]:
@@ -45,6 +45,10 @@ def test_schematics_and_boards_agree(boards: Callable[[str], Path], preset: str)
         ("receiver", '(property "LCSC" "C', '(property "LCSC" "C9', "fields"),
         ("emitter", '(lib_id "lumitip:R")', '(lib_id "lumitip:R") (dnp yes)', "fields"),
         ("receiver", "(kicad_sch", "(kicad_pcb", "readable"),
+        ("receiver", ': receiver")', ': emitter")', "title_block"),
+        ("emitter", '(rev "', '(rev "0', "title_block"),
+        ("flange", '(date "', '(date "2019-01-01', "title_block"),
+        ("breakout", '(comment 1 "Design ', '(comment 1 "Design 0', "title_block"),
     ],
 )
 def test_a_damaged_schematic_fails(

@@ -31,6 +31,7 @@ from lumitip_fab.checks.plug_in import measure_plug_in
 from lumitip_fab.checks.readers.kicad_board import Part, Terminal
 from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
 from lumitip_fab.checks.settling import measure_settling
+from lumitip_fab.checks.title_blocks import measure_title_block
 from lumitip_fab.design import Component, Design, Footprint, Pad, Relief, footprints
 from lumitip_fab.design.shape import Side
 from lumitip_fab.errors import OutputError
@@ -270,6 +271,7 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     measure_protection,
     measure_shrouds,
     measure_sockets,
+    measure_title_block,
 )
 """Each applies to the boards that have what it measures: a finger's cells, the contacts of a
 coupling, a regulator's hot loop, an antenna's keep-out, flexible layers …"""

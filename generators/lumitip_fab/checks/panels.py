@@ -16,6 +16,7 @@ from lumitip_fab.checks.readers.gerber import gerber_area
 from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.readers.tables import unpacked
 from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
+from lumitip_fab.checks.title_blocks import measure_title_block
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
@@ -191,4 +192,5 @@ MEASURES: tuple[Measure[PanelBoard], ...] = (
     measure_rails,
     measure_marks,
     measure_tooling,
+    measure_title_block,
 )

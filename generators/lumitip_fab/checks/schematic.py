@@ -9,6 +9,7 @@ from lumitip_fab.checks.readers.kicad_board import KicadBoard
 from lumitip_fab.checks.readers.kicad_sheet import Sheet, read_sheet
 from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.checks.schematic_pins import other_pins
+from lumitip_fab.checks.title_blocks import other_texts
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
@@ -29,6 +30,9 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         yield count("schematic.fields", subject, list(_other_fields(sheet, read)), "fields")
         yield count("schematic.pins", subject, list(other_pins(sheet, read)), "pins")
         yield count("schematic.nets", subject, list(_other_nets(sheet, read.board)), "nets")
+        title = f"{design.title.on_boards().name}: {name}"
+        texts = list(other_texts(sheet.title_block, design, title))
+        yield count("schematic.title_block", subject, texts, "texts of the title block")
 
 
 def _other_parts(sheet: Sheet, board: KicadBoard) -> Iterator[str]:

@@ -113,7 +113,9 @@ class KicadBoard:
     """Rectangle on each layer for a user's own use."""
     thickness_mm: float
     """Of the finished board; NaN if the file does not state it."""
-    openings: tuple[Opening, ...] = ()
+    openings: tuple[Opening, ...]
+    title_block: dict[str, str]
+    """As `kicad_shapes.title_block` has it."""
 
     def copper(self) -> Iterator[Copper]:
         """Every piece of copper."""
@@ -183,6 +185,7 @@ class _Reader:
             regions,
             (numbers(child(child(self.root, "general") or [], "thickness")) or (math.nan,))[0],
             tuple(openings(self.root)),
+            shapes.title_block(self.root),
         )
 
     def plies(self) -> Iterator[Ply]:

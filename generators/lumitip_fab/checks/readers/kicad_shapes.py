@@ -83,6 +83,16 @@ def words(node: Node | None) -> list[str]:
     return [value for value in (node or [])[1:] if isinstance(value, str)]
 
 
+def title_block(root: Node) -> dict[str, str]:
+    """Texts of a page's title block by name, a comment by its number: `{"rev": "A", "1": …}`."""
+    block = child(root, "title_block") or []
+    texts = {str(node[0]): words(node) for node in children(block, "title", "date", "rev")}
+    comments = (words(node) for node in children(block, "comment"))
+    return {
+        name: "".join(text) for name, text in (*texts.items(), *((w[0], w[1:]) for w in comments))
+    }
+
+
 def numbers(node: Node | None) -> tuple[float, ...]:
     """The values of a node that are numbers."""
     return tuple(float(value) for value in words(node) if _is_number(value))

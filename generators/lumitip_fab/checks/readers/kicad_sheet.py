@@ -15,6 +15,7 @@ from lumitip_fab.checks.readers.kicad_shapes import (
     children,
     numbers,
     read_nodes,
+    title_block,
     words,
 )
 from lumitip_fab.errors import OutputError
@@ -57,6 +58,8 @@ class Sheet:
     symbols: tuple[Symbol, ...]
     nets: dict[str, set[str]]
     """Pins on each net: `{"GND": {"Q1.2", …}, …}`; nets without a name are called `"?"`."""
+    title_block: dict[str, str]
+    """As `kicad_shapes.title_block` has it."""
 
 
 def read_sheet(path: Path) -> Sheet:
@@ -92,7 +95,7 @@ def read_sheet(path: Path) -> Sheet:
             texts = tuple(fields.items())
             symbols.append(Symbol(*own, texts, placed_at_all, in_bom, tuple(placed)))
         pins += [(f"{fields['Reference']}.{pin.number}", pin.at) for pin in placed]
-    return Sheet(tuple(symbols), _nets(joined, names, pins))
+    return Sheet(tuple(symbols), _nets(joined, names, pins), title_block(whole))
 
 
 def _nets(
