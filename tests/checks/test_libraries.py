@@ -1,5 +1,6 @@
 """Libraries and rules of a board's project, as KiCad finds them."""
 
+import json
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -32,6 +33,26 @@ def pad_moved_on_the_board(folder: Path) -> None:
     changed = re.sub(r'(\(pad "1" smd rect \(at )-?[\d.]+ ', r"\g<1>-1.3 ", text, count=1)
     assert changed != text
     path.write_text(changed)
+
+
+def all_halved(folder: Path) -> None:
+    """Every length of the rules and classes, so that they still agree with each other."""
+    path = folder / PROJECT
+    path.write_text(
+        re.sub(r"(_width|clearance|meter|drill)\": [\d.]+", r'\1": 0.05', path.read_text())
+    )
+
+
+def in_settings(more: dict[str, object]) -> Damage:
+    """More settings of the board."""
+
+    def damage(folder: Path) -> None:
+        path = folder / PROJECT
+        record = json.loads(path.read_text())
+        record["board"]["design_settings"] |= more
+        path.write_text(json.dumps(record))
+
+    return damage
 
 
 DAMAGES: dict[str, tuple[Damage, set[str]]] = {
@@ -71,19 +92,41 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
     "clearance": (edited(PROJECT, '"min_clearance": 0.', '"min_clearance": 1.'), {"project"}),
     "small clearance": (
         edited(PROJECT, '"min_clearance": 0.2', '"min_clearance": 0.01'),
-        {"project"},
+        {"project", "rules"},
     ),
     "no edge": (
         edited(PROJECT, '"min_copper_edge_clearance": 0.', '"min_copper_edge_clearance": -0.'),
-        {"project"},
+        {"project", "rules"},
     ),
-    "ignored": (edited(PROJECT, '"error"', '"ignore"'), {"project"}),
-    "track": (edited(PROJECT, '"min_track_width": 0.', '"min_track_width": -0.'), {"project"}),
-    "severity": (edited(PROJECT, '"error"', '"errors"'), {"project"}),
-    "net": (edited(PROJECT, '"pattern": "GND"', '"pattern": "EARTH"'), {"project"}),
+    "ignored": (edited(PROJECT, '"error"', '"ignore"'), {"project", "rules"}),
+    "track": (
+        edited(PROJECT, '"min_track_width": 0.', '"min_track_width": -0.'),
+        {"project", "rules"},
+    ),
+    "severity": (edited(PROJECT, '"error"', '"errors"'), {"project", "rules"}),
+    "net": (edited(PROJECT, '"pattern": "GND"', '"pattern": "EARTH"'), {"project", "rules"}),
     "class": (edited(PROJECT, '"name": "signal"', '"name": "other"'), {"project"}),
     "file name": (edited(PROJECT, "receiver.kicad_pro", "emitter.kicad_pro"), {"project"}),
-    "no JSON": (edited(PROJECT, "{", "["), {"project"}),
+    "no JSON": (edited(PROJECT, "{", "["), {"project", "rules"}),
+    "rules and classes": (all_halved, {"rules"}),
+    "holes": (edited(PROJECT, '"min_hole_clearance": 0.2', '"min_hole_clearance": 0.1'), {"rules"}),
+    "walls": (edited(PROJECT, '"min_hole_to_hole": 0.2', '"min_hole_to_hole": 0.1'), {"rules"}),
+    "ring": (
+        edited(PROJECT, '"min_via_annular_width": 0.1', '"min_via_annular_width": 0.0'),
+        {"rules"},
+    ),
+    "spokes": (edited(PROJECT, '"min_resolved_spokes": 2', '"min_resolved_spokes": 0'), {"rules"}),
+    "edge": (
+        edited(PROJECT, '"min_copper_edge_clearance": 0.5', '"min_copper_edge_clearance": 0.1'),
+        {"rules"},
+    ),
+    "track of supplies": (edited(PROJECT, '"track_width": 0.5', '"track_width": 0.2'), {"rules"}),
+    "fault of a sheet by default": (edited(PROJECT, '"pin_to_pin": "error",', ""), {"rules"}),
+    "faults of the board": (
+        in_settings({"rule_severities": {"clearance": "ignore"}}),
+        {"rules"},
+    ),
+    "exclusions": (in_settings({"drc_exclusions": ["clearance|1|2"]}), {"rules"}),
 }
 
 

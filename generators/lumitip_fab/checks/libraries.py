@@ -1,5 +1,5 @@
 """A board's project: its libraries hold the parts that board and schematic show; its rules, classes
-and nets agree with each other and with the board's nets."""
+and nets agree with each other and with the board's nets, and the rules are those of the design."""
 
 import json
 from collections import Counter
@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from lumitip_fab.checks.board_read import names_of
+from lumitip_fab.checks.project_rules import weaker_rules
 from lumitip_fab.checks.readers import MALFORMED
 from lumitip_fab.checks.readers.kicad_shapes import (
     Node,
@@ -58,11 +59,17 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             ("symbols", "symbols are not the library's", _symbols),
             ("project", "settings are missing or contradict others", _project),
         ):
-            try:
-                yield count(f"libraries.{check}", subject, list(wrong(folder)), unit)
-            except (OutputError, OSError, *MALFORMED) as error:
-                reason = f"cannot be read: {error!s:.200}"
-                yield unreadable(f"libraries.{check}", subject, reason)
+            yield _count(check, subject, unit, wrong(folder))
+    for name in (*names_of(design), *(panel.name for panel in design.panels)):
+        weak = weaker_rules(outputs / "boards" / name, design)
+        yield _count("rules", f"boards/{name}", "settings are weaker than the design's", weak)
+
+
+def _count(check: str, subject: str, unit: str, wrong: Iterator[str]) -> Measurement:
+    try:
+        return count(f"libraries.{check}", subject, list(wrong), unit)
+    except (OutputError, OSError, *MALFORMED) as error:
+        return unreadable(f"libraries.{check}", subject, f"cannot be read: {error!s:.200}")
 
 
 def _tables(folder: Path) -> Iterator[str]:
