@@ -102,7 +102,7 @@ def lack_of_power(values: Values) -> str:
 
 def least_current_ma(values: Values) -> float:
     """Current of the LEDs at which a detector in full light takes nearly all that its pull-up
-    gives. Below it no cell reaches full scale."""
+    gives. Below it no cell reaches 95 % of full scale."""
     detector = entries("photodetectors")[values["receiver.photodetector"]]
     volts = entries("controllers")[values["controller.board"]]["supply_v"]
     full_ua = 1e6 * (volts - detector["saturation_v"]) / values.number("receiver.pull_up_ohm")

@@ -84,8 +84,8 @@ class Plug(Strict):
     supply: PinName
     """Pin that takes the regulated supply."""
     least_v: float = Field(default=4.4, gt=0, le=30)
-    """Least voltage at the supply pin with which the controller works (V). The default is what USB
-    2.0 gives a device at least, and a board that USB feeds has a diode behind that, too."""
+    """Least voltage at the supply pin with which the controller works (V). The default is assumed:
+    what USB 2.0 gives a device at least, and a board that USB feeds has a diode behind that."""
     regulated: PinName
     """Pin that feeds the receiver."""
 

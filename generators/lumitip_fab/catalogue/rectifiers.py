@@ -19,14 +19,14 @@ class SchottkyDiode(Chip):
     small_ma: float = Field(gt=0, le=1e5)
     """A smaller current, at which its forward voltage is known, too."""
     forward_v: Voltages
-    """Largest forward voltage at `small_ma`, and at `rated_ma`."""
+    """Largest forward voltage at `small_ma`, and at `rated_ma`, at 25 °C."""
 
     def drop_v(self, ma: float) -> float:
         """Largest forward voltage at a current: straight over the logarithm of the current from
         `small_ma` on, and not less below it."""
         low_v, high_v = self.forward_v
-        decades = math.log(self.rated_ma / self.small_ma)
-        return low_v + (high_v - low_v) * max(math.log(ma / self.small_ma) / decades, 0.0)
+        share = math.log(max(ma / self.small_ma, 1.0)) / math.log(self.rated_ma / self.small_ma)
+        return low_v + (high_v - low_v) * share
 
     @model_validator(mode="after")
     def _smaller_is_smaller(self) -> Self:

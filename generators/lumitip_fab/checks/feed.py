@@ -8,7 +8,9 @@ from lumitip_fab.checks.board_read import ReadBoard
 from lumitip_fab.checks.result import Measurement
 
 _CATHODE, _ANODE = "1", "2"
-_CABLE = "J7"
+_CABLES = ("J6", "J7")
+"""Wires to the emitter and from the supply. Where both have a wire of 5 V, that of J6 is behind the
+board's fuse and MOSFET, as the controller is."""
 _CONDUCT = ("resistor", "inductor", "fuse", "schottky diode")
 """Kinds of parts with two terminals that a current goes through."""
 
@@ -19,7 +21,8 @@ def measure_feed(read: ReadBoard) -> Iterator[Measurement]:
     feed = read.design.electrical.feed
     if feed is None or feed.board != read.name:
         return
-    wire, pin = _named(read, _CABLE, feed.wire), _socket(read, feed.pin)
+    ends = [_named(read, cable, feed.wire) for cable in _CABLES]
+    wire, pin = next((end for end in ends if end is not None), None), _socket(read, feed.pin)
     if feed.diode is None:
         joined = [] if wire is not None and wire == pin else [f"{feed.pin} is not on {feed.wire}"]
         yield read.count("feed", joined, "pins")

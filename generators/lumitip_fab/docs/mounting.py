@@ -57,7 +57,9 @@ def _work(design: Design) -> Iterator[str]:
     own = [wire.number for wire in ends if wire.signal == "5V" and led_net != "5V"]
     if ends:
         listed_ends = ", ".join(f"{wire.number} to {wire.signal}" for wire in ends)
-        free = "".join(_text("supplied_free", wire=number) for number in own)
+        feed = design.electrical.feed
+        name = "supplied_free" if feed and feed.diode else "supplied_joined"
+        free = "".join(_text(name, wire=number) for number in own)
         yield _text("supplied", ends=listed_ends, free=free)
     yield _text("moved", rated_n=design.strength.rated_force_n)
 

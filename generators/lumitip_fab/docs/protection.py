@@ -38,7 +38,10 @@ def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
         # The flange's board has a test of its own, after that of the fingers if they are not on it.
         later = board.name == "flange" and len(design.auxiliary_boards) > 1
         where = 'its test (step "Flange")' if later else "the first test"
-        ends = "".join(_text("protected_reversed", part=mosfet) for mosfet in kinds[MOSFET])
+        ends = "".join(
+            _text("protected_reversed", part=mosfet, supply_v=design.wiring.supply_v)
+            for mosfet in kinds[MOSFET]
+        )
         yield _text(
             "protected_tvs", board=board.name, part=part, melts=melts, where=where, reversed=ends
         )

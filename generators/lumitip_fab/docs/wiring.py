@@ -152,7 +152,7 @@ def _fed_by(cabling: Cabling, joined: bool) -> str:
     thick = section_mm2 > SLOT_MM2 or outer_mm(section_mm2) > SLOT_MM
     pressed = passage(_TEXTS, "pressed_flat" if thick else "pressed").format(slot_mm=SLOT_MM)
     lit = any(wire.signal == "5V" for wire in cabling.cables[0].wires)
-    feeds = "lit" if lit else "fed_joined" if joined else "fed"
+    feeds = ("lit" if lit else "fed") + ("_joined" if joined else "")
     return passage(_TEXTS, feeds) + "".join(
         passage(_TEXTS, "at_flange").format(header=header, contacts=contacts, pressed=pressed)
         for header in sorted(headers)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from lumitip_fab.config.automatic import Value, automatic_fields
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.wiring.ratings import sold_ohm
+from lumitip_fab.derive.wiring.ratings import sold_from
 from lumitip_fab.derive.wiring.sources import String
 from lumitip_fab.derive.wiring.strings import (
     lengths,
@@ -20,7 +20,7 @@ CURRENT_STEP = 0.95  # from one current that is tried to the next
 FULL_SHARE = 0.95
 """Of the current that saturates a pull-up, what a bare cell takes at least by the catalogue. More
 would hide what dims a cell by less than the rest."""
-OFF_SHARE = 0.05  # that a value which is sold may be off
+CUT_OFF_SHARE = 1.1  # of its range, that the light of a bare cell asks for
 MOST_PULL_UP_OHM = 150e3  # a channel settles that much slower
 SHARED_OHM = 75e3  # the published one
 
@@ -126,9 +126,12 @@ def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
         else float(automatic_fields()["receiver.pull_up_ohm"].start)
     )
     factor = _least_ma(config, start) / p.emitter.current_ma
-    ohm = start if factor <= 1 else sold_ohm(min(start * factor, MOST_PULL_UP_OHM))
+    ohm = start if factor <= 1 else sold_from(min(start * factor, MOST_PULL_UP_OHM))
+    share = FULL_SHARE * p.emitter.current_ma / _least_ma(config, ohm)
     reason = f"a bare cell uses nearly all of its range at {p.emitter.current_ma:g} mA"
-    if p.emitter.current_ma < (1 - OFF_SHARE) * _least_ma(config, ohm):
+    if share > CUT_OFF_SHARE:
+        reason = f"a bare cell is cut off: its light is {share:.1f} times its range"
+    elif share < FULL_SHARE - 1e-9:
         reason = (
             f"with more than {MOST_PULL_UP_OHM:g} a channel settles too slowly; at "
             f"{p.emitter.current_ma:g} mA a bare cell uses a part of its range"

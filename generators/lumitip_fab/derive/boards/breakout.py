@@ -19,7 +19,7 @@ from lumitip_fab.catalogue.controllers import Plug, Strip
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors, ties
 from lumitip_fab.derive.boards.breakout_input import board_mm, breakout_input
-from lumitip_fab.derive.boards.feed import breakout_feed
+from lumitip_fab.derive.boards.feed import behind_net, breakout_feed
 from lumitip_fab.derive.boards.indicator import breakout_indicator
 from lumitip_fab.derive.boards.protection import breakout_protection, refuse_breakout
 from lumitip_fab.derive.boards.supply_input import FUSED, input_board, input_nets
@@ -84,7 +84,7 @@ def derive_breakout(
     screws = [(at, p.breakout.hole_mm) for at in holes]
     emitter = connectors.emitter_signals(config)
     before = (input_nets(config)[0], FUSED) if entry else ()
-    behind = (plug.supply,) if feed else ()
+    behind = (behind_net(config, plug),) if feed else ()
     return (
         AuxiliaryBoard(
             name="breakout",
@@ -127,10 +127,13 @@ def _components(
         pin: pin_net(config, muxing, net)
         for pin, net in (_net_of(config, plug, muxing) | switching(config)).items()
     }
+    receiver = connectors.receiver_signals(config, muxing)
+    emitter, supply = connectors.emitter_signals(config), supply_signals(config)
+    wired = {*receiver, *emitter, *supply, *nets.values(), *input_nets(config), FUSED}
     sockets, beside = [], []
     value, shape = config.parameters.breakout.socket, footprints.socket(strip)
     for number, (names, side) in enumerate(zip(plug.rows, (-1, 1), strict=True), start=1):
-        on = tuple(nets.get(name, name) for name in names)
+        on = tuple(nets.get(name) or _spare(name, wired) for name in names)
         at = 0.0, side * rows.socket_mm
         sockets.append(
             mounted(f"J{number}", "socket", value, strip, shape, numbered(on), at, pins=names)
@@ -138,8 +141,6 @@ def _components(
         at, size_mm = (0.0, side * rows.beside_mm), (strip.pitch_mm, PAD_MM, DRILL_MM)
         beside.append(wires(f"J{number + 2}", on, size_mm, at, named=False))
     length = config.parameters.breakout.board_mm[0]
-    receiver = connectors.receiver_signals(config, muxing)
-    emitter, supply = connectors.emitter_signals(config), supply_signals(config)
     edge = length / 2 - ties.WEB_MM - ties.HOLE_MM - ties.GAP_MM
     left = -edge + connectors.half_width_mm(len(emitter), wide=True)
     right = edge - connectors.half_width_mm(len(supply), wide=True)
@@ -150,6 +151,11 @@ def _components(
         _wires("J6", emitter, left, rows.wires_mm, length),
         _entering(config, _wires("J7", supply, right, rows.wires_mm, length)),
     )
+
+
+def _spare(name: str, wired: set[str]) -> str:
+    """Net of a pin without a wire: its name, unless a wire's net is called so."""
+    return f"{name}_SPARE" if name in wired else name
 
 
 def _entering(config: Input, cable: Component) -> Component:
@@ -164,10 +170,10 @@ def _entering(config: Input, cable: Component) -> Component:
 
 def _net_of(config: Input, plug: Plug, muxing: Muxing) -> dict[str, str]:
     """Net of the wire of each pin that has one, and of the supplies. Behind a diode the pin that
-    takes a supply has a net of its own, with its name."""
+    takes a supply has a net of its own."""
     nets = {pin: pin for pin in muxing.adc_pins}
     nets |= {pin: f"S{i}" for i, pin in enumerate(muxing.select_pins)}
-    fed = plug.supply if config.parts.breakout.feed_diode else connectors.REGULATED
+    fed = behind_net(config, plug)
     return nets | {plug.ground: "GND", plug.supply: fed, plug.regulated: "3V3"}
 
 

@@ -12,6 +12,7 @@ regulator's switch to the robot's supply, and over the wires to whatever is on i
 
 from collections.abc import Iterator, Sequence
 
+from lumitip_fab.catalogue.controllers import Plug
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors
 from lumitip_fab.derive.boards.breakout_input import collide
@@ -28,7 +29,9 @@ DIODE = "schottky diode"
 REF = "VD1"
 """Pins of an Arduino are called D1, D2 …"""
 REGULATED_TOLERANCE = 0.02
-"""Of the regulator's output, assumed."""
+"""Of the flange's 5 V, assumed."""
+USB_V = 5.5
+"""Greatest voltage of USB: 5.25 V, and 5.5 V with the type C."""
 EDGE_MM = 1.86
 """From the board's edge to the diode's middle: room for its body and for a track."""
 UP_MM = 2.0
@@ -40,46 +43,66 @@ HOLE_MM = 5.0
 def derive_feed(config: Input, faults: Diagnostics) -> Feed | None:
     """Voltages at the controller; none where no wire of a board feeds it.
 
-    Raises nothing: a diode that leaves the controller too little is reported to `faults`.
+    Raises nothing: a diode that leaves the controller too little, or that a current or a voltage
+    overloads, is reported to `faults`.
     """
     p, board = config.parameters, config.parts.controller.board
     plug, diode = board.plug, config.parts.breakout.feed_diode
     if plug is None or not p.breakout.enabled:
         return None
-    wire_v, drop_v = _at_wire_v(config), diode.drop_v(board.draws_ma) if diode else 0.0
+    drawn_ma = _drawn_ma(config)
+    wire_v, drop_v = _at_wire_v(config), diode.drop_v(drawn_ma) if diode else 0.0
     if diode:
         left_v = wire_v - drop_v
         faults.unless(left_v >= plug.least_v, "feed_low", left_v=left_v, least_v=plug.least_v)
-        faults.unless(board.draws_ma <= diode.rated_ma, "feed_overload", diode=diode)
+        faults.unless(drawn_ma <= diode.rated_ma, "feed_overload", diode=diode, drawn_ma=drawn_ma)
+        faults.unless(diode.rated_v >= USB_V, "feed_breaks", diode=diode, usb_v=USB_V)
     return Feed(
         board="breakout",
         diode=p.breakout.feed_diode if diode else None,
         wire=connectors.REGULATED,
         pin=plug.supply,
         wire_v=wire_v,
-        drawn_ma=board.draws_ma,
+        drawn_ma=drawn_ma,
         drop_v=drop_v,
         least_v=plug.least_v,
     )
 
 
 def leaves_enough(config: Input, name: str) -> bool:
-    """Whether the controller still works behind a diode of the catalogue."""
-    board, diode = config.parts.controller.board, config.catalogue.schottky_diodes[name]
-    if board.plug is None:
+    """Whether the controller still works behind a diode of the catalogue. Never where its supply
+    is that of the LEDs, 5 V: their current, and fuse and MOSFET, leave less at the wire."""
+    plug, diode = config.parts.controller.board.plug, config.catalogue.schottky_diodes[name]
+    if plug is None:
         return True
-    return _at_wire_v(config) - diode.drop_v(board.draws_ma) >= board.plug.least_v
+    left_v = _at_wire_v(config) - diode.drop_v(_drawn_ma(config))
+    return is_regulated(config) and left_v >= plug.least_v
+
+
+def _drawn_ma(config: Input) -> float:
+    """Largest current of the controller, with that of all detectors in full light."""
+    p, board = config.parameters, config.parts.controller.board
+    pull_ups = sum(p.grid.columns)
+    return board.draws_ma + 1000 * pull_ups * board.supply_v / p.receiver.pull_up_ohm
 
 
 def _at_wire_v(config: Input) -> float:
-    """Least voltage at the end of the wire that feeds the controller."""
-    p, ma = config.parameters, config.parts.controller.board.draws_ma
-    ohm = 2 * COPPER_OHM_MM2_PER_M * p.wiring.supply_mm / 1000 / p.wiring.section_mm2
-    if is_regulated(config):
-        low_v = config.parts.flange.regulator.output_v * (1 - REGULATED_TOLERANCE)
-    else:
-        low_v = p.supply.voltage_v * (1 - SUPPLY_TOLERANCE)
-    return low_v - ohm * ma / 1000
+    """Least voltage at the end of the wire that feeds the controller: from the flange's regulator,
+    or from a supply of the user's own."""
+    p = config.parameters
+    way_mm = 2 * (p.wiring.supply_mm + p.wiring.slack_mm)
+    ohm = COPPER_OHM_MM2_PER_M * way_mm / 1000 / p.wiring.section_mm2
+    volts = config.parts.flange.regulator.output_v
+    made = p.flange.enabled and is_regulated(config)
+    low_v = volts * (1 - (REGULATED_TOLERANCE if made else SUPPLY_TOLERANCE))
+    return low_v - ohm * _drawn_ma(config) / 1000
+
+
+def behind_net(config: Input, plug: Plug) -> str:
+    """Net of the controller's supply pin: the wire's, or behind a diode one of its own."""
+    if config.parts.breakout.feed_diode is None:
+        return connectors.REGULATED
+    return f"{plug.supply}_PIN" if plug.supply == connectors.REGULATED else plug.supply
 
 
 def breakout_feed(
@@ -97,7 +120,7 @@ def breakout_feed(
     plug, diode = config.parts.controller.board.plug, config.parts.breakout.feed_diode
     if diode is None or plug is None:
         return ()
-    nets = plug.supply, connectors.REGULATED
+    nets = behind_net(config, plug), connectors.REGULATED
     for at, angle_deg in _places(config, holes):
         made = chip(REF, DIODE, config.parameters.breakout.feed_diode, diode, nets, at, angle_deg)
         if _has_room(config, made, parts, holes):
