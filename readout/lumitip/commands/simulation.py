@@ -30,13 +30,15 @@ def bench_tasks(options: argparse.Namespace) -> int:
     from lumitip.layout import Layout
     from lumitip.links.twin import published_layout
     from lumitip.tasks.bench import bench_tasks as run
-    from lumitip.tasks.report import goals, write
+    from lumitip.tasks.report import goals, prepare, write
 
     layout = Layout.load(options.layout) if options.layout else published_layout()
     try:  # before the long trials
-        options.out.mkdir(parents=True, exist_ok=True)
+        prepare(options.out)
     except OSError as error:
-        raise LumitipError(f"--out {options.out}: cannot be created: {error}") from error
+        raise LumitipError(
+            f"--out {options.out}: cannot be written: {error}. Choose another folder"
+        ) from error
     say = partial(print, flush=True)
     results = run(layout, options.trials, say=say, cores=options.cores or os.cpu_count() or 1)
     for path in write(results, options.out):

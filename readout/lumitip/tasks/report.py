@@ -8,6 +8,7 @@ from pathlib import Path
 
 from lumitip.tasks.bench import Advantage, Result, advantages
 
+FILES = ("tasks.md", "tasks.json", "tasks.svg")
 FASTER = 3.0
 """Goal for the speed with the line's angle, in times that of the published law, without loss."""
 FEW = 0.05
@@ -20,14 +21,33 @@ _NAMES = {
 _TITLES = {"cloth": "edge of a cloth", "cable": "cable", "corner": "cloth up to its corner"}
 
 
+def prepare(folder: Path) -> None:
+    """Make the folder of the results.
+
+    Raises:
+        OSError: if a file of them cannot be written there.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in FILES:
+        file = folder / name
+        is_new = not file.exists()
+        file.open("ab").close()
+        if is_new:
+            file.unlink()
+
+
 def write(results: Sequence[Result], folder: Path) -> list[Path]:
     """Write `tasks.md` and `tasks.json`, and `tasks.svg` if matplotlib is installed.
+
+    Args:
+        results: of all tasks.
+        folder: made if it does not exist.
 
     Returns:
         The written files.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    table, figures = folder / "tasks.md", folder / "tasks.json"
+    prepare(folder)
+    table, figures, plot = (folder / name for name in FILES)
     table.write_text(markdown(results), encoding="utf-8")
     text = json.dumps(_plain([asdict(r) for r in results]), indent=1, sort_keys=True)
     figures.write_text(text + "\n", encoding="utf-8")
@@ -36,7 +56,7 @@ def write(results: Sequence[Result], folder: Path) -> list[Path]:
         import matplotlib  # noqa: F401
     except ImportError:
         return written
-    return [*written, _plot(results, folder / "tasks.svg")]
+    return [*written, _plot(results, plot)]
 
 
 def markdown(results: Sequence[Result]) -> str:
