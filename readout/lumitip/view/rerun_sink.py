@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from lumitip.errors import MissingExtra
+from lumitip.errors import MissingExtra, ViewError
 from lumitip.frame import Frame
 from lumitip.grid import Floats
 from lumitip.processing import Contact
@@ -21,17 +21,33 @@ MOST_HZ = 60.0
 _TURN = np.array([1.0, -1.0])
 
 
+def _refuse(path: Path) -> None:
+    """Refuse a file that the Rerun viewer would not open, or that would be overwritten."""
+    if path.suffix != ".rrd":
+        raise ViewError(
+            f"--rerun is {path}; the name of the file must end in .rrd. Without a file, write "
+            "--rerun after the addresses: it opens the viewer"
+        )
+    if path.exists():
+        raise ViewError(f"--rerun {path}: the file exists. Choose another name")
+    if not path.parent.is_dir():
+        raise ViewError(f"--rerun {path}: there is no folder {path.parent}. Create it first")
+
+
 class RerunSink:
     """Sends frames to Rerun. Thread-safe.
 
     Args:
-        path: of an `.rrd` file; default: open the viewer.
+        path: of an `.rrd` file, which must not exist yet; default: open the viewer.
 
     Raises:
         MissingExtra: if `rerun-sdk` is not installed.
+        ViewError: if the file exists or cannot be written.
     """
 
     def __init__(self, path: Path | None = None) -> None:
+        if path is not None:
+            _refuse(path)
         try:
             import rerun
         except ModuleNotFoundError as error:
@@ -41,7 +57,10 @@ class RerunSink:
         if path is None:
             self._stream.spawn()
         else:
-            self._stream.save(path)
+            try:
+                self._stream.save(path)
+            except RuntimeError as error:
+                raise ViewError(f"--rerun {path}: cannot be written: {error}") from error
         self._last: dict[str, tuple[float, str]] = {}
 
     def take(self, finger: Finger, frame: Frame) -> None:

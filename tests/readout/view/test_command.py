@@ -127,6 +127,10 @@ def test_a_port_of_another_live_view_says_so(
         (["replay://none.mcap"], "cannot be read"),
         (["twin://demo", "--host", "203.0.113.1", "--port", "0"], "cannot be used"),
         (["twin://demo", "--port", "70000"], "allowed are 0 to 65535"),
+        (["twin://demo", "--rerun", "no/run.rrd"], "there is no folder no. Create it first"),
+        (["twin://demo", "--rerun", "/proc/run.rrd"], "cannot be written"),
+        (["twin://demo", "--rerun", "run.mcap"], "must end in .rrd"),
+        (["--rerun", "twin://demo", "twin://demo"], "write --rerun after the addresses"),
         (["twin://demo", "--gap", "50"], "gap is 50.0; a number from 0.5 to 20 is needed"),
         (["twin://demo", "--diameter", "0"], "diameter is 0.0; a number from 0.3 to 200"),
     ],
@@ -136,3 +140,13 @@ def test_what_cannot_be_shown_is_told(
 ) -> None:
     assert main(["view", *arguments]) == 2
     assert told in capsys.readouterr().err
+
+
+def test_a_file_for_rerun_is_never_overwritten(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    file = tmp_path / "run.rrd"
+    file.write_text("mine", encoding="utf-8")
+    assert main(["view", "twin://demo", "--rerun", str(file)]) == 2
+    assert "the file exists. Choose another name" in capsys.readouterr().err
+    assert file.read_text(encoding="utf-8") == "mine"
