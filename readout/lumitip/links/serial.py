@@ -182,9 +182,12 @@ def _line(url: Url) -> tuple[str, int]:
 
 def _port_error(port: str, error: Exception) -> errors.LinkError:
     code = getattr(error, "errno", None)
-    if isinstance(error, FileNotFoundError) or code == 2:
-        there = ", ".join(str(p.device) for p in list_ports.comports()) or "none"
+    there = ", ".join(str(p.device) for p in list_ports.comports()) or "none"
+    if isinstance(error, FileNotFoundError) or code == errno.ENOENT:
         return errors.DeviceNotFound(f"{port}: there is no such port; the ports are: {there}")
+    # pyserial raises an error of its own, without the number, for a file of another kind.
+    if code == errno.EISDIR or getattr(error.__context__, "args", ())[:1] == (errno.ENOTTY,):
+        return errors.DeviceNotFound(f"{port}: this is no serial port; the ports are: {there}")
     if code == 13:
         return errors.DeviceNotFound(
             f"{port}: no permission. On Linux add this user to the group of the port, mostly "

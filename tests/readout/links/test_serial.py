@@ -165,6 +165,15 @@ def test_a_port_that_is_not_there_or_not_allowed(device, tmp_path: Path) -> None
         Fingertip.open(f"serial://{tmp_path / 'ttyACM7'}", device.layout)
 
 
+@pytest.mark.parametrize("name", ["notes.txt", "."])
+@pytest.mark.parametrize("knows_layout", [True, False])
+def test_a_path_that_is_no_port(device, tmp_path: Path, name: str, knows_layout: bool) -> None:
+    (tmp_path / "notes.txt").write_text("", encoding="utf-8")
+    layout = device.layout if knows_layout else None
+    with pytest.raises(DeviceNotFound, match="this is no serial port; the ports are:"):
+        Fingertip.open(f"serial://{tmp_path / name}", layout)
+
+
 def test_without_a_port_the_only_usb_device_is_taken(
     line: Line, device, monkeypatch: pytest.MonkeyPatch, until: Until
 ) -> None:
