@@ -158,6 +158,13 @@ def path(value: object, error: Error = ArgumentError) -> Path:
     return Path(value)
 
 
+def unwritable(path: Path, error: Exception) -> str:
+    """The message for a file that cannot be written."""
+    if not path.parent.is_dir():
+        return f"{path}: cannot be written: there is no folder {path.parent}. Create it first"
+    return f"{path}: cannot be written: {error}"
+
+
 def _needed(least: float, most: float, above: float) -> str:
     if math.isfinite(most):
         begin = f"above {above:g} up to" if math.isfinite(above) else f"from {least:g} to"

@@ -47,9 +47,12 @@ def export(options: argparse.Namespace) -> int:
 
 def recover(options: argparse.Namespace) -> int:
     """Write the new recording."""
+    from lumitip.recording import RecordingError
     from lumitip.recording import recover as write_readable
 
     target = options.target or options.file.with_suffix(".recovered.mcap")
+    if target.suffix != ".mcap":
+        raise RecordingError(f"the new file is {target}; its name must end in .mcap")
     saved = write_readable(options.file, target, options.finger)
     print(f"{saved.path}: {saved.frames} frames; {'; '.join(saved.damage) or 'no damage found'}")
     return 0

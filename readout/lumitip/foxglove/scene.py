@@ -87,7 +87,7 @@ def write_scene(
     except FileExistsError as error:
         raise FoxgloveError(f"{path} exists. Choose another name") from error
     except OSError as error:
-        raise FoxgloveError(f"{path}: cannot be written: {error}") from error
+        raise FoxgloveError(arguments.unwritable(path, error)) from error
     try:
         with file:
             frames = _write(McapWriter(file), fingers)

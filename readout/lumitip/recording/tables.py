@@ -48,7 +48,7 @@ def export(source: str | Path, target: str | Path, finger: str | None = None) ->
     except BaseException as error:
         path.unlink(missing_ok=True)
         if isinstance(error, OSError):
-            raise RecordingError(f"{target}: cannot be written: {error}") from error
+            raise RecordingError(arguments.unwritable(path, error)) from error
         raise
 
 

@@ -75,7 +75,7 @@ class Writer:
         except FileExistsError as error:
             raise message.RecordingError(f"{path} exists. Choose another name") from error
         except (OSError, ValueError) as error:
-            raise message.RecordingError(f"{path}: cannot be written: {error}") from error
+            raise message.RecordingError(arguments.unwritable(self.path, error)) from error
         try:
             self._begin()
         except (OSError, ValueError) as error:  # also a device_id that cannot be encoded

@@ -70,6 +70,29 @@ def test_record_refuses_what_no_other_program_would_open(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_new_file_in_a_folder_that_does_not_exist_says_what_to_do(
+    make_frames: Make, record: Record, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, new = str(record(make_frames(3))), str(tmp_path / "none" / "new.mcap")
+    for command in (
+        ["record", "twin://demo", new, "--frames", "3"],
+        ["recover", path, new],
+        ["export", path, new.replace(".mcap", ".csv")],
+        ["foxglove", f"left={path}", "--out", new, "--no-estimate"],
+    ):
+        assert main(command) == 2
+        assert f"there is no folder {tmp_path / 'none'}. Create it first" in capsys.readouterr().err
+
+
+def test_recover_refuses_what_no_other_program_would_open(
+    make_frames: Make, record: Record, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = record(make_frames(3))
+    assert main(["recover", str(path), str(tmp_path / "new.txt")]) == 2
+    assert "must end in .mcap" in capsys.readouterr().err
+    assert not (tmp_path / "new.txt").exists()
+
+
 def test_info_tells_what_a_recording_holds(
     make_frames: Make,
     record: Record,
