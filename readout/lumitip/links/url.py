@@ -55,7 +55,16 @@ class Url:
 
     @property
     def path(self) -> Path:
-        """The target as a file; `~` is the user's home folder."""
+        """The target as a file; `~` is the user's home folder.
+
+        Raises:
+            UrlError: if there is none.
+        """
+        if not self.target:
+            raise UrlError(
+                f"the address {self.text!r} has no file; one like {self.scheme}://run.mcap is "
+                "needed"
+            )
         try:
             return Path(self.target).expanduser()
         except RuntimeError:  # no home folder: opening the file will fail

@@ -9,7 +9,14 @@ import numpy as np
 import pytest
 
 from lumitip import Calibration, Fingertip, Frame, Layout
-from lumitip.errors import EndOfRecording, LinkError, LinkTimeout, LumitipError, WrongDesign
+from lumitip.errors import (
+    EndOfRecording,
+    LinkError,
+    LinkTimeout,
+    LumitipError,
+    UrlError,
+    WrongDesign,
+)
 from lumitip.recording import Writer
 
 START = 1.7e9
@@ -182,6 +189,11 @@ def test_the_recordings_calibration_is_used(record, layout: Layout) -> None:
     with Fingertip.open(f"replay://{path}?speed=0", calibrated=False) as tip:
         assert next(iter(tip.frames())).values[0] == 255.0
         assert tip.calibration.empty is None
+
+
+def test_an_address_without_a_file_is_refused() -> None:
+    with pytest.raises(UrlError, match=r"has no file; one like replay://run\.mcap is needed"):
+        Fingertip.open("replay://?speed=2")
 
 
 def test_a_recording_of_another_design_is_refused(record, make_layout) -> None:

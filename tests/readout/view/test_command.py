@@ -125,6 +125,7 @@ def test_a_port_of_another_live_view_says_so(
         (["twin://nothing"], "allowed are demo"),
         (["twin://demo", "nonsense"], "one like"),
         (["replay://none.mcap"], "cannot be read"),
+        (["replay://"], "has no file; one like replay://run.mcap is needed"),
         (["twin://demo", "--host", "203.0.113.1", "--port", "0"], "cannot be used"),
         (["twin://demo", "--port", "70000"], "allowed are 0 to 65535"),
         (["twin://demo", "--rerun", "no/run.rrd"], "there is no folder no. Create it first"),
