@@ -255,24 +255,6 @@ def test_a_folder_that_is_a_file_is_told_before_the_trials(
     assert "cannot be written" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("name", ["tasks.md", "tasks.json", "tasks.svg"])
-def test_results_that_cannot_be_written_are_refused_before_the_trials(
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-    name: str,
-) -> None:
-    def run(*_: object, **__: object) -> None:
-        raise AssertionError("no trial may begin")
-
-    monkeypatch.setattr("lumitip.tasks.bench.bench_tasks", run)
-    (tmp_path / "out" / name).mkdir(parents=True)
-    assert main(["bench-tasks", "--trials", "1", "--out", str(tmp_path / "out")]) == 2
-    error = capsys.readouterr().err
-    assert "cannot be written" in error and "Choose another folder" in error
-    assert [file.name for file in (tmp_path / "out").iterdir()] == [name]
-
-
 def test_scenes_and_places_of_a_twin(twin: Twin) -> None:
     calls: list[Callable[[], object]] = [
         lambda: twin.values("edge"),

@@ -183,3 +183,21 @@ def test_a_fault_of_the_twin_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(twin, "packet_at", fails)
     with pytest.raises(LinkError, match="unexpected ArithmeticError: mine"):
         Fingertip.open("twin://demo", timeout=5.0)
+
+
+@pytest.mark.parametrize("name", ["tasks.md", "tasks.json", "tasks.svg"])
+def test_results_that_cannot_be_written_are_refused_before_the_trials(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    name: str,
+) -> None:
+    def run(*_: object, **__: object) -> None:
+        raise AssertionError("no trial may begin")
+
+    monkeypatch.setattr("lumitip.tasks.bench.bench_tasks", run)
+    (tmp_path / "out" / name).mkdir(parents=True)
+    assert main(["bench-tasks", "--trials", "1", "--out", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert "cannot be written" in error and "Choose another folder" in error
+    assert [file.name for file in (tmp_path / "out").iterdir()] == [name]
