@@ -183,7 +183,7 @@ def test_the_wait_is_not_much_longer_than_it_must_be(
     hasty = dataclasses.replace(
         design, electrical=dataclasses.replace(design.electrical, channel=third)
     )
-    found = _detector(hasty, Corner(400, 5.5), "third", tmp_path)
+    found = _detector(hasty, Corner(1000, 5.5), "third", tmp_path)
     assert abs(found[f"wrong_{math.ceil(third.wait_us)}"]) > SETTLED_COUNTS
 
 
