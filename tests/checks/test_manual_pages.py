@@ -52,10 +52,15 @@ After. http://example.com/long_url-with-{"hyphens-" * 30}end {"y" * 200}
 """
 NOTED = """# Casting
 
+| wire | size | where | none |
+|---|---|---:|---|
+
 Wash your hands.
 
 3. three at 2.5 °C, for 24 h, as the note says
 4. Another one of 7 mm
+
+## More
 """
 Damage = Callable[[Path], None]
 
@@ -107,6 +112,15 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
         lambda folder: edit(folder / NOTE, "24 h", "12 h"),
         {"notes"},
     ),
+    "unit of a note changed": (lambda folder: edit(folder / NOTE, "24 h", "24 min"), {"notes"}),
+    "column of a note renamed": (
+        lambda folder: edit(folder / NOTE, "| size |", "| length |"),
+        {"labels"},
+    ),
+    "heading of a note renamed": (
+        lambda folder: edit(folder / NOTE, "## More", "### Less"),
+        {"labels"},
+    ),
     "line of a note twice": (
         lambda folder: edit(folder / NOTE, "Wash your hands.", "Wash your hands.\n\n" * 2),
         {"lines"},
@@ -128,9 +142,12 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
     "row left out": (html("<td>W50</td>\n<td>Ø50 mm ≥ ½</td>"), {"words"}),
     "last passage left out": (html("y" * 200), {"words"}),
     "chapter twice": (html("<h2>2. More", "<h2>1. More"), {"chapters", "words"}),
-    "no chapters": (lambda folder: write(folder, "# None"), {"chapters", "pictures"}),
+    "no chapters": (lambda folder: write(folder, "# None"), {"chapters", "labels", "pictures"}),
     "item numbered anew": (html('<ol start="3">', "<ol>"), {"notes", "words"}),
-    "HTML cut short": (lambda folder: cut_short(folder / HTML, 6000), {"pictures", "words"}),
+    "HTML cut short": (
+        lambda folder: cut_short(folder / HTML, 6000),
+        {"labels", "pictures", "words"},
+    ),
     "HTML missing": (lambda folder: (folder / HTML).unlink(), {"readable"}),
     "drawing broken": (html("base64,", "base64,A"), {"readable"}),
     "drawing of another name": (html("manual/work.svg", "manual/other.svg"), {"pictures"}),

@@ -30,10 +30,15 @@ EDITS = [
     ("M2 nut,,ISO 4032,4,piece", "M2 nut,,ISO 4032,3,piece", {"needed"}),
     ('5 m each",assumed,1,15,15.00', '5 m each",assumed,2,15,30.00', {"enough", "total"}),
     ("spool of 1 kg,assumed,1,25,25.00", "spool of 1 kg,assumed,1,25,20.00", {"enough", "total"}),
-    ("5 boards,inferred,1,12.1,12.10", "4 boards,inferred,1,12.1,12.10", {"enough"}),
+    ("5 boards,inferred,1,12.1,12.10", "4 boards,inferred,1,12.1,12.10", {"enough", "units"}),
     ("wooden stick,,", "resistor 1K1,,", {"lines"}),
     ("DOWSIL PR-1200,Dow,", "DOWSIL PR-1200,Dow Inc,", {"lines"}),
     ("pack_price,price", "price", {"readable"}),
+    ("needed,unit,", "needed,each,", {"readable"}),
+    (",sheet,ream", ",piece,ream", {"units"}),
+    (",m,spool of 50 m", ",mm,spool of 50 m", {"units"}),
+    (",32,piece,,", ",32,pair,,", {"units"}),
+    ("spool of 50 m,assumed", "spool of 50 m,quoted", {"units"}),
 ]
 
 

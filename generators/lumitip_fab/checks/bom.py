@@ -51,6 +51,7 @@ class Row:
     maker: str
     part: str
     quantity: float
+    unit: str
     each: float | None
     price: float | None
 
@@ -78,6 +79,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield _near("wire", rows, "wiring", metres, "m", "of every wire in the list of cables")
     yield from _bolts(rows, design)
     yield count("bom.prices", _FILE, _wrong_prices(rows, design), "wrong lines")
+    units = [f"{row.item}: {row.unit}" for row in rows if row.unit != _unit(row, design)]
+    yield count("bom.units", _FILE, units, "other units")
     yield _sum(rows, total, note, design)
     yield from measure_numbers(outputs, design)
 
@@ -110,6 +113,7 @@ def _read(path: Path) -> tuple[tuple[Row, ...], float, str]:
                 r["manufacturer"],
                 r["part"],
                 _figure(r["quantity"]),
+                r["unit"],
                 _price(r["unit_price"]),
                 _price(r["price"]),
             )
@@ -254,6 +258,13 @@ def _each(row: Row, design: Design) -> float | None:
         return purchase.unit_price(design.slicing.of(row.item).name)
     packs = {"casting": purchase.silicone, "mask": purchase.film, "wiring": "stranded wire"}
     return purchase.unit_price(packs[row.group])
+
+
+def _unit(row: Row, design: Design) -> str:
+    """Unit of a line's quantity."""
+    by_group = {"prints": "g", "casting": "g", "mask": "sheet", "wiring": "m"}
+    by_item = {piece.item: piece.unit for piece in design.purchase.pieces}
+    return by_group.get(row.group) or by_item.get(row.item, "piece")
 
 
 def _same(figure: float | None, wanted: float | None, room: float) -> bool:

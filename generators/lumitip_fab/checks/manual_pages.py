@@ -1,5 +1,5 @@
 """The manual's two forms say the same: every passage of the HTML stands in the PDF, in order, and
-nothing else does. A passage that stands in a note too has the same numbers there."""
+nothing else does. A passage that stands in a note too has the same numbers and units there."""
 
 import hashlib
 import math
@@ -8,7 +8,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
-from lumitip_fab.checks.notes import lines_misplaced
+from lumitip_fab.checks.notes import labels_alone, lines_misplaced
 from lumitip_fab.checks.readers.manual import (
     Html,
     Passage,
@@ -28,6 +28,8 @@ _HTML, _PDF = "manual/manual.html", "manual/manual.pdf"
 _CHAPTER = re.compile(r"(\d+)\. ")
 _ITEM = re.compile(r"^\d+\. ")
 _NUMBER = re.compile(r"\d+(\.\d+)?")
+_FIGURE = re.compile(_NUMBER.pattern + r"(%|°C?|min|mL|[cmkμ]?[ALNVWghmsΩ])?")
+"""A number with its unit."""
 _ELSEWHERE = re.compile(r"(https?|mailto):")
 _SHORT = 12  # letters that stand in many places
 _FEW = 8  # letters beside numbers that are alike by chance
@@ -49,6 +51,7 @@ def measure(outputs: Path, _design: Design) -> Iterator[Measurement]:
     yield html.count("links", lost, "that lead nowhere")
     yield html.count("notes", list(_at_odds(outputs, page)), "passages at odds with a note")
     yield html.count("lines", list(lines_misplaced(outputs, page)), "lines of a note misplaced")
+    yield html.count("labels", list(labels_alone(outputs, page)), "labels of a note alone")
     pdf = Subject("manual_pages", _PDF)
     try:
         sheets = read_sheets(outputs / _PDF)
@@ -87,7 +90,7 @@ def _leads(outputs: Path, page: Html, to: str) -> bool:
 
 
 def _at_odds(outputs: Path, page: Html) -> Iterator[str]:
-    """Passages of manual or notes that stand in both, but with other numbers."""
+    """Passages of manual or notes that stand in both, but with other numbers or units."""
     noted: dict[str, set[str]] = defaultdict(set)
     for path in sorted(outputs.glob("*/*.md")):
         try:
@@ -96,10 +99,10 @@ def _at_odds(outputs: Path, page: Html) -> Iterator[str]:
             yield f"{path.name} {error}"
             continue
         for line in (_ITEM.sub("", line) for line in lines):
-            noted[_NUMBER.sub("0", line)].add(line)
+            noted[_FIGURE.sub("0", line)].add(line)
     shown: dict[str, set[str]] = defaultdict(set)
     for line in (_ITEM.sub("", line) for line in page.lines):
-        shown[_NUMBER.sub("0", line)].add(line)
+        shown[_FIGURE.sub("0", line)].add(line)
     for form in sorted(shown.keys() & noted.keys()):
         if sum(map(str.isalpha, form)) > _FEW:
             yield from sorted(shown[form] ^ noted[form])

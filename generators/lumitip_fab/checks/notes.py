@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from lumitip_fab.checks.readers.manual import Html, read_note
+from lumitip_fab.checks.readers.manual import Html, letters, read_note
 from lumitip_fab.errors import OutputError
 
 _FOLDERS = ("mask", "mould", "print", "wiring")
@@ -24,12 +24,40 @@ def lines_misplaced(outputs: Path, page: Html) -> Iterator[str]:
     line that stands in no other document is not judged.
     """
     shown = _forms(page.lines)
-    for path in sorted(path for name in _FOLDERS for path in (outputs / name).glob("*.md")):
+    for path in _paths(outputs):
         lines, beside = _note(path), path.with_name(_exchanged(path.name))
         twin = [_exchanged(line) for line in _note(beside)] if beside != path else []
         yield from (f"{path.name}: {line:.40} too often" for line in _doubled(lines, shown, twin))
         moved = {*_moved(lines, shown), *_moved(lines, twin)}
         yield from (f"{path.name}: {line:.40} out of order" for line in sorted(moved))
+
+
+def labels_alone(outputs: Path, page: Html) -> Iterator[str]:
+    """Headings and rows of tables, with their units, that stand in no other document.
+
+    Only the note on printing has the masks that another design prints, which `printing.parts`
+    reads.
+    """
+    for path in _paths(outputs):
+        labels = _labels(path)
+        beside = path.with_name(_exchanged(path.name))
+        known = {*_forms(page.lines), *map(_exchanged, _labels(beside) if beside != path else ())}
+        alone = (label for label in labels if label not in known and not label.startswith("mask/"))
+        yield from (f"{path.name}: {label:.40}" for label in alone)
+
+
+def _paths(outputs: Path) -> list[Path]:
+    """The notes that the manual includes."""
+    return sorted(path for name in _FOLDERS for path in (outputs / name).glob("*.md"))
+
+
+def _labels(path: Path) -> list[str]:
+    """Headings and rows of tables of a note; none if it cannot be read."""
+    try:
+        note = read_note(path)
+    except OutputError:
+        return []
+    return _forms([*map(letters, (*note.chapters, *note.sections)), *note.rows])
 
 
 def _exchanged(text: str) -> str:

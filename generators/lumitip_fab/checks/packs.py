@@ -22,7 +22,9 @@ class Row:
     product: str
     """Its manufacturer and order number."""
     needed: float
+    unit: str
     pack: str
+    confidence: str
     packs: int
     pack_price: float | None
     price: float | None
@@ -49,6 +51,9 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     )
     wrong = [order.item for order in orders if not _enough(order, design.purchase)]
     yield count("packs.enough", _FILE, wrong, "wrong numbers or prices of packs")
+    units = {row["item"]: row["unit"] for row in bill}
+    other = [order.item for order in orders if not _as_sold(order, units, design.purchase)]
+    yield count("packs.units", _FILE, other, "other units or confidence")
     prices = sum(order.price or 0.0 for order in orders)
     currency = design.purchase.currency
     off = abs(prices - total)
@@ -77,11 +82,21 @@ def _row(row: dict[str, str]) -> Row:
         row["item"],
         f"{row['manufacturer']} {row['part']}",
         float(row["needed"]),
+        row["unit"],
         row["pack"],
+        row["confidence"],
         int(row["packs"]),
         float(row["pack_price"]) if row["pack_price"] else None,
         float(row["price"]) if row["price"] else None,
     )
+
+
+def _as_sold(order: Row, units: dict[str, str], purchase: Purchase) -> bool:
+    """Whether a line has the unit and the confidence of its pack, or the unit of the bill."""
+    if not order.pack:
+        return (order.unit, order.confidence) == (units.get(order.item), "")
+    packs = {(pack.pack, pack.unit, pack.confidence) for pack in purchase.packs}
+    return (order.pack, order.unit, order.confidence) in packs
 
 
 def _enough(order: Row, purchase: Purchase) -> bool:

@@ -59,6 +59,8 @@ class Html(HTMLParser):
     passages: list[Passage] = field(default_factory=lambda: [Passage()])
     chapters: list[str] = field(default_factory=list)
     """Headings of the second level."""
+    sections: list[str] = field(default_factory=list)
+    """Headings of the third level."""
     pictures: list[Shown] = field(default_factory=list)
     links: list[str] = field(default_factory=list)
     places: set[str] = field(default_factory=set)
@@ -81,6 +83,15 @@ class Html(HTMLParser):
                 found.append(text)
             before = passage.row
         return found
+
+    @property
+    def rows(self) -> list[str]:
+        """Letters of each row of its tables."""
+        texts: dict[int, str] = {}
+        for passage in self.passages:
+            if passage.row:
+                texts[passage.row] = texts.get(passage.row, "") + letters(passage.text)
+        return list(texts.values())
 
     def __post_init__(self) -> None:
         super().__init__()
@@ -107,6 +118,8 @@ class Html(HTMLParser):
             self._mark()
         elif tag == "h2":
             self.chapters.append("")
+        elif tag == "h3":
+            self.sections.append("")
 
     def handle_endtag(self, tag: str) -> None:
         """Ends it."""
@@ -114,6 +127,8 @@ class Html(HTMLParser):
             self._heads += self.passages[-1].text
         elif tag == "h2" and self.chapters:
             self.chapters[-1] = self.passages[-1].text
+        elif tag == "h3" and self.sections:
+            self.sections[-1] = self.passages[-1].text
         elif tag in ("ol", "ul") and self._numbers:
             self._numbers.pop()
         elif tag == "table":
