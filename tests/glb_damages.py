@@ -27,6 +27,50 @@ def shift(told: Told, group: str, x: float = 0.0, y: float = 0.0, z: float = 0.0
         matrix[12 + place] += by_mm / 1000
 
 
+def material(told: Told, name: str) -> Told:
+    """The material of a body."""
+    return told["materials"][primitive(told, name)["material"]]
+
+
+def primitive(told: Told, name: str) -> Told:
+    """The triangles of a body with their material."""
+    return told["meshes"][node(told, name)["mesh"]]["primitives"][0]
+
+
+def film_like_the_board(told: Told) -> None:
+    """One colour for two layers."""
+    of_board = material(told, "emitter.board")["pbrMetallicRoughness"]["baseColorFactor"]
+    factors = material(told, "emitter.film")["pbrMetallicRoughness"]["baseColorFactor"]
+    factors[:3] = of_board[:3]
+    material(told, "emitter.film").pop("alphaMode")
+
+
+def materials_lost(told: Told) -> None:
+    """No body has one."""
+    for mesh in told["meshes"]:
+        del mesh["primitives"][0]["material"]
+
+
+def colours_lost(told: Told) -> None:
+    """Materials without what they look like."""
+    for each in told["materials"]:
+        del each["pbrMetallicRoughness"]
+
+
+def opaque_silicone(told: Told) -> None:
+    """What hides the board."""
+    del material(told, "emitter.silicone")["alphaMode"]
+
+
+def other_material(told: Told) -> None:
+    """A backing that looks like the parts of a board."""
+    primitive(told, "receiver.backing")["material"] = primitive(told, "emitter.D1")["material"]
+
+
+COLOURS = (film_like_the_board, materials_lost, colours_lost, opaque_silicone, other_material)
+"""Damages of what a viewer shows."""
+
+
 def rewritten(data: bytes, damage: Callable[[Told], None]) -> bytes:
     """A GLB file with its tables changed."""
     size = struct.unpack_from("<I", data, 12)[0]

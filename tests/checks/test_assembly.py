@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from damages import failing
-from glb_damages import Told, move, node, opened, rewritten
+from glb_damages import COLOURS, Told, move, node, opened, rewritten
 from lumitip_fab.checks import assembly, drawings
 
 pytestmark = pytest.mark.slow
@@ -89,6 +89,7 @@ def no_nodes(told: Told) -> None:
 
 
 SCENE = {
+    **{damage: {"colours"} for damage in COLOURS},
     led_moved: {"facing"},
     photodetector_moved: {"facing"},
     multiplexer_raised: {"interference"},

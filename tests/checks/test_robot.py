@@ -30,6 +30,7 @@ EVERY = {
     "macros",
     "slide",
     "limits",
+    "colours",
 }
 Damage = Callable[[Path], None]
 
@@ -189,6 +190,16 @@ DAMAGES: tuple[tuple[str, Damage, set[str]], ...] = (
     ("ten times the mass", heavier, {"mass"}),
     ("centre of mass", moved('link name="lumitip_receiver"', (0, 0.001, 0)), {"centre", "macros"}),
     ("a macro's mesh", edited(MACROS, "receiver_film.stl", "emitter_film.stl"), {"macros"}),
+    ("no materials", substituted(r"<material[\s\S]*?</material>", "", count=0), {"colours"}),
+    (
+        "one material for two layers",
+        substituted(r'(<material name="[^"]*)receiver_film', r"\1receiver_board"),
+        {"colours"},
+    ),
+    ("a colour lost", substituted(r"<color [^>]*/>", ""), {"colours"}),
+    ("another colour", in_both('rgba="0.82 ', 'rgba="0.1 '), {"colours"}),
+    ("a colour none can see", in_both("0.86 1", "0.86 0"), {"colours"}),
+    ("an opaque silicone", in_both("0.95 0.35", "0.95 1"), {"colours"}),
     ("film too large", scaled(FILM, 1.02), {"reach"}),
     ("film too high", raised(FILM, 0.3), {"closed", "open", "reach"}),
     ("too small to touch", scaled(PLATE, 0.98), {"reach"}),

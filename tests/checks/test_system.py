@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from damages import failing
-from glb_damages import Told, move, node, opened, rewritten, shift
+from glb_damages import COLOURS, Told, move, node, opened, rewritten, shift
 from lumitip_fab.checks import system
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.docs.spec import rows
 
 GLB, SVG = "assembly/system.glb", "assembly/system.svg"
-SCENE = {"bodies", "stack", "place", "fingers", "tcp", "interference"}
+SCENE = {"bodies", "stack", "place", "fingers", "tcp", "interference", "axis", "colours"}
 DRAWING = {"drawing", "drawing_page"}
 
 
@@ -91,7 +91,18 @@ def no_nodes(told: Told) -> None:
     del told["nodes"]
 
 
+def gripper_aside(told: Told) -> None:
+    move(told, "gripper.envelope", y=0.36)
+
+
+def robot_aside(told: Told) -> None:
+    move(told, "robot.flange", x=0.36)
+
+
 MOVED = {
+    **{damage: {"colours"} for damage in COLOURS},
+    gripper_aside: {"axis"},
+    robot_aside: {"axis"},
     robot_away: {"stack"},
     coupling_low: {"stack"},
     lower_part_high: {"stack", "place", "interference"},

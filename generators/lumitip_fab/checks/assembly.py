@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lumitip_fab.checks.colours import wrong_colours
 from lumitip_fab.checks.drawings import measure_exploded
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.scene import Node, Scene, read_scene
@@ -36,6 +37,7 @@ NAMES = (
     "assembly.stroke",
     "assembly.closes",
     "assembly.interference",
+    "assembly.colours",
 )
 FACING_MM = 0.05
 LEAN_DEG = 0.02
@@ -72,6 +74,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield from _contacts(scene, design)
     yield from _openings(scene, design)
     yield from _interference(scene, design)
+    colours = {name: node.colour for name, node in scene.nodes.items()}
+    yield _GLB.count("colours", list(wrong_colours(colours, design)), "colours")
 
 
 def _step(outputs: Path, design: Design) -> Measurement:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import trimesh
 
+from lumitip_fab.checks.colours import Colour, wrong_colours
 from lumitip_fab.checks.readers.solids import Vectors, moved
 from lumitip_fab.checks.readers.urdf import Link, Model, read_macros, read_urdf
 from lumitip_fab.checks.result import Measurement, Subject, count, unreadable
@@ -31,6 +32,7 @@ _CHECKS = (
     "inertia",
     "reach",
     "bulk",
+    "colours",
 )
 PLACE_MM = 0.02
 GAP_MM = 0.1  # the meshes are coarser than the parts, and a film's taper ends in one edge
@@ -61,6 +63,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         yield _URDF.count("tree", wrong, "links and joints")
         if not wrong:
             yield from _places(model, design)
+            yield _URDF.count("colours", list(_unlike(model, design)), "colours")
             for finger in design.fingers:
                 yield from _body(model.links[f"lumitip_{finger.name}"], finger, design)
     yield _macros(outputs)
@@ -83,6 +86,20 @@ def _misplaced(model: Model) -> list[str]:
     ]
     wrong += ["robot's name"] if model.name != "lumitip" else []
     return wrong + (["settings for MuJoCo"] if model.settings != _SETTINGS else [])
+
+
+def _unlike(model: Model, design: Design) -> Iterator[str]:
+    """Visuals without a colour or of a wrong one. A material's name stands for one colour in the
+    whole file, so that each has its own."""
+    found: dict[str, Colour | None] = {}
+    for finger in design.fingers:
+        link = model.links[f"lumitip_{finger.name}"]
+        for visual in link.visuals:
+            name, colour = link.materials.get(visual, ("", None))
+            found[visual.replace("_", ".", 1)] = colour
+            if name != f"lumitip_{visual}":
+                yield f"{visual} has the material {name or 'of no name'}"
+    yield from wrong_colours(found, design)
 
 
 def _places(model: Model, design: Design) -> Iterator[Measurement]:

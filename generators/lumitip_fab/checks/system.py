@@ -12,11 +12,12 @@ import numpy as np
 
 from lumitip.errors import LayoutError
 from lumitip.layout import Layout
+from lumitip_fab.checks.colours import wrong_colours
 from lumitip_fab.checks.drawings import measure_system
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.scene import Scene, read_scene
 from lumitip_fab.checks.readers.solids import Vectors
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import AuxiliaryBoard, Design, frames
 from lumitip_fab.errors import OutputError
 
@@ -30,7 +31,9 @@ READS = (
 _FILE = "assembly/system.glb"
 _ASSEMBLY = "assembly/assembly.glb"
 _LAYOUT = "layout.json"
-_BODIES = ("bodies", "stack", "place", "fingers", "tcp", "interference")
+_BODIES = ("bodies", "stack", "place", "fingers", "tcp", "interference", "axis", "colours")
+_BOUGHT = ("robot.flange", "coupling.body", "gripper.envelope")
+"""Bodies that stand for what is bought, round the tool's axis."""
 SHARED_MM3 = 0.05
 PLACE_MM = 0.02
 
@@ -54,6 +57,12 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield _placed("place", scene, _files(outputs, design), "file or outline")
     yield _placed("fingers", scene, _fingers(outputs, design), "the assembly")
     yield _interference(scene, design)
+    bought = [name for name in _BOUGHT if name in scene.nodes]
+    off = {name: float(np.abs(scene.nodes[name].centre_mm[:2]).max()) for name in bought}
+    worst = max(off, key=lambda name: off[name])
+    yield Measurement("system.axis", _FILE, off[worst], 0, PLACE_MM, "mm", f"{worst} off the axis")
+    colours = {name: node.colour for name, node in scene.nodes.items()}
+    yield count("system.colours", _FILE, list(wrong_colours(colours, design)), "colours")
     try:
         yield from _centre(_tcp(scene, Layout.load(outputs / _LAYOUT)), scene, design)
     except (LayoutError, KeyError) as error:

@@ -30,6 +30,8 @@ class Node:
     triangles: NDArray[np.int64]
     to_scene: Matrix
     """From the group's frame to the scene, mm."""
+    colour: tuple[float, ...] | None
+    """Of its material, with its opacity, as a viewer shows it; none without a material."""
 
     @property
     def mesh(self) -> Any:
@@ -98,7 +100,19 @@ def _node(
     if not np.isfinite(points).all() or corners.max(initial=-1) >= len(points):
         raise ValueError(f"{body['name']} is not a mesh")
     x, y, z = (value * _M_TO_MM for value in body.get("translation", (0.0, 0.0, 0.0)))
-    return Node(group, applied(translation(x, y, z), points * _M_TO_MM), corners, to_scene)
+    moved = applied(translation(x, y, z), points * _M_TO_MM)
+    return Node(group, moved, corners, to_scene, _colour(document, primitive))
+
+
+def _colour(document: dict[str, Any], primitive: dict[str, Any]) -> tuple[float, ...] | None:
+    if "material" not in primitive:
+        return None
+    material = document["materials"][primitive["material"]]
+    colour = material.get("pbrMetallicRoughness", {}).get("baseColorFactor")
+    if colour is None:
+        return None
+    opacity = float(colour[3]) if material.get("alphaMode") == "BLEND" else 1.0
+    return (*map(float, colour[:3]), opacity)
 
 
 def _values(document: dict[str, Any], binary: bytes, which: int) -> NDArray[Any]:

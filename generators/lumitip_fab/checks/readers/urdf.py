@@ -1,5 +1,6 @@
 """`Model`: links, joints and meshes of a URDF file, read without any library of robots."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,8 @@ class Link:
     """About the centre of mass, in the link's axes, shape `(3, 3)`."""
     visuals: dict[str, Any]
     collisions: dict[str, Any]
+    materials: dict[str, tuple[str, tuple[float, ...]]]
+    """Name and colour of each visual's material, as a viewer takes them; of those that have one."""
     text: str
     """Its XML, names without their prefix and files without their folder."""
 
@@ -120,6 +123,7 @@ def _link(element: Element, folder: Path) -> Link:
         inertia_g_mm2=_inertia(inertial) if weighed else np.zeros((3, 3)),
         visuals=dict(_meshes(element, "visual", folder)),
         collisions=dict(_meshes(element, "collision", folder)),
+        materials=dict(_materials(element)),
         text=_text(element),
     )
 
@@ -147,6 +151,14 @@ def _meshes(element: Element, kind: str, folder: Path) -> Any:
         mesh.apply_scale(_three(mesh_element.attrib["scale"]) * M_TO_MM)
         own = body.find("origin")
         yield str(body.get("name")), mesh if own is None else mesh.apply_transform(_place(own))
+
+
+def _materials(element: Element) -> Iterator[tuple[str, tuple[str, tuple[float, ...]]]]:
+    for body in element.findall("visual"):
+        material, colour = body.find("material"), body.find("material/color")
+        if material is not None and colour is not None:
+            rgba = tuple(float(word) for word in colour.get("rgba", "").split())
+            yield str(body.get("name")), (material.get("name", ""), rgba)
 
 
 def _place(origin: Element) -> Vectors:
