@@ -6,6 +6,7 @@ from pathlib import Path
 import pikepdf
 import pytest
 
+from active_pages import ACTIVE, added
 from damages import cut_short, edit
 from lumitip_fab.checks import manual_pages
 from lumitip_fab.docs.page import html_page
@@ -170,6 +171,7 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
     ),
     "pages swapped": (pdf(lambda document: document.pages.reverse()), {"pages", "words"}),
     "PDF cut short": (lambda folder: cut_short(folder / PDF), {"readable"}),
+    **{change.__name__: (added(PDF, change), {"readable"}) for change in ACTIVE},
     "PDF missing": (lambda folder: (folder / PDF).unlink(), {"readable"}),
 }
 

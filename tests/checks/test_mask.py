@@ -9,6 +9,7 @@ from typing import Any
 import pikepdf
 import pytest
 
+from active_pages import ACTIVE, added
 from damages import cut_short, failing, passing
 from pages import Operation, page_damage, paths, registration, runs
 
@@ -275,6 +276,7 @@ DAMAGES: dict[str, tuple[Callable[[Path], None], set[str]]] = {
     "other finger's": (fingers_swapped, {"window", "note", *DRAWN}),
     "page truncated": (truncated(A4), {*PAGE, *BLACK, *FLAPS, "note", "facing", *DRAWN}),
     "font left out": (font_left_out(LETTER), {"fonts"}),
+    **{a.__name__: (added(LETTER, a), {*PAGE, *BLACK, *FLAPS, "facing"}) for a in ACTIVE},
     "page missing": (lambda out: (out / LETTER).unlink(), {*PAGE, *BLACK, *FLAPS, "facing"}),
 }
 

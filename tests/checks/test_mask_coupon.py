@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from active_pages import ACTIVE, added
 from damages import box, carve, cut_short, failing, flip_a_triangle, passing
 
 pytestmark = pytest.mark.slow
@@ -43,6 +44,7 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
     "3MF missing": (lambda out: (out / "mask/coupon.3mf").unlink(), {"covers"}),
     "page missing": (lambda out: (out / PAGE).unlink(), {"covers"}),
     "page cut short": (lambda out: cut_short(out / PAGE, 300), {"covers"}),
+    **{change.__name__: (added(PAGE, change), {"covers"}) for change in ACTIVE},
     "grey": (drawn(b"\n0 g\n", b"\n1 g\n"), {"covers"}),
     "only an outline": (drawn(b"36 re f*", b"36 re S"), {"covers"}),
 }

@@ -9,10 +9,12 @@ from html.parser import HTMLParser
 from pathlib import Path
 from xml.etree import ElementTree as XmlTree
 
+import pikepdf
 import pypdfium2
 from markdown_it import MarkdownIt
 
 from lumitip_fab.checks.readers import MALFORMED
+from lumitip_fab.checks.readers.plain_pdf import require_plain
 from lumitip_fab.errors import OutputError
 from lumitip_fab.text import page_letters
 
@@ -209,11 +211,13 @@ def read_sheets(path: Path) -> tuple[Sheet, ...]:
     """
     sheets = []
     try:
+        with pikepdf.open(path) as pdf:
+            require_plain(pdf)
         with closing(pypdfium2.PdfDocument(path)) as document:
             for page in document:
                 text = page.get_textpage()
                 foot = text.get_text_bounded(top=_FOOT_PT)
                 sheets.append(Sheet(text.get_text_bounded(bottom=_FOOT_PT), foot))
-    except (OSError, AssertionError, *MALFORMED) as error:
+    except (OSError, AssertionError, pikepdf.PdfError, *MALFORMED) as error:
         raise OutputError(f"cannot be read: {error!r:.200}") from error
     return tuple(sheets)

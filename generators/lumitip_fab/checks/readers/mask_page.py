@@ -12,6 +12,7 @@ import pikepdf
 from numpy.typing import NDArray
 
 from lumitip_fab.checks.readers import MALFORMED
+from lumitip_fab.checks.readers.plain_pdf import require_plain
 
 Points = NDArray[np.float64]
 
@@ -144,6 +145,7 @@ def read_page(path: Path) -> Page:
         with pikepdf.open(path) as pdf:
             if len(pdf.pages) != 1:
                 raise PageError(f"{len(pdf.pages)} pages, one is needed")
+            require_plain(pdf)
             page = pdf.pages[0]
             left, low, right, high = (float(v) * MM for v in page.mediabox)
             faces = faces_of(page)
