@@ -8,6 +8,7 @@ from damages import cut_short, edit, excerpt, failing
 from lumitip_fab.checks.readers.spice import Element
 
 EMITTER, RECEIVER = "boards/emitter/emitter.cir", "boards/receiver/receiver.cir"
+DETECTORS = "boards/receiver/receiver_detectors.cir"
 FLANGE = "boards/flange/flange_plug_in.cir"
 EDITS = {
     "LED at another net": (EMITTER, "D5 S1_0 S1_1 led", "D5 S1_0 S2_1 led", {"loose", "nets"}),
@@ -19,6 +20,13 @@ EDITS = {
     "unknown figure": (EMITTER, "print i_ma", "print i_mean", {"loose"}),
     "nothing printed": (FLANGE, "print ", "echo ", {"loose"}),
     "detector at another net": (RECEIVER, "CQ5 Q5 0", "CQ5 Q6 0", {"loose", "nets"}),
+    "loose tolerance": (EMITTER, "reltol=1e-5", "reltol=1e-2", {"options"}),
+    "loose voltages": (RECEIVER, "vntol=1e-7", "vntol=1m", {"options"}),
+    "no tolerance": (FLANGE, ".options reltol=1e-4", "", {"options"}),
+    "conductance beside a base": (DETECTORS, "gmin=1e-14", "gmin = 1e-12", {"options"}),
+    "charge beside a base": (DETECTORS, " chgtol=1e-17", "", {"options"}),
+    "another temperature": (EMITTER, "temp=26.85 tnom", "temp=80 tnom", {"options"}),
+    "another option": (RECEIVER, ".options temp", ".options method=gear temp", {"options"}),
     "no nodes": (RECEIVER, "CQ5 Q5 0 10p", "CQ5", {"readable"}),
 }
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from lumitip_fab.checks.board_read import names_of, ohm
 from lumitip_fab.checks.readers.kicad_board import Part, read_board
-from lumitip_fab.checks.readers.spice import Element, Netlist, read_netlist
+from lumitip_fab.checks.readers.spice import Element, Netlist, figure, read_netlist
 from lumitip_fab.checks.result import Measurement, Subject, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
@@ -18,6 +18,13 @@ _MODELLED = frozenset("BCDLMQR")
 """First letters of elements that stand for a part, or for a property of it."""
 _OF_PART = frozenset("DMQ")
 """Those whose last word is a model."""
+_RELATIVE = ("reltol", 1e-4)
+"""Error of a simulation that figures of three digits allow; ngspice by itself has 1e-3."""
+_DEFAULTS = {"abstol": 1e-12, "vntol": 1e-6, "chgtol": 1e-14, "gmin": 1e-12, "trtol": 7.0}
+"""What ngspice has by itself, beyond which no netlist goes."""
+_OF_BASES = {"abstol": 1e-15, "chgtol": 1e-17, "gmin": 1e-14}
+"""Beside the base current of a detector in the dark, some 0.1 nA."""
+_ROOM_C = 26.85
 _RESISTANCE = 0.02
 """How far a resistor may be off its part's value: one may be taken at its worst."""
 
@@ -30,7 +37,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         yield from measure_board(outputs, design, name)
 
 
-def measure_board(outputs: Path, _design: Design, name: str) -> Iterator[Measurement]:
+def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurement]:
     """Every netlist beside one board."""
     for path in sorted(outputs.glob(f"boards/{name}/*.cir")):
         of = Subject("netlists", path.relative_to(outputs).as_posix())
@@ -44,6 +51,7 @@ def measure_board(outputs: Path, _design: Design, name: str) -> Iterator[Measure
         yield of.count("loose", list(_loose(found)), "nodes, models or figures lead nowhere")
         yield of.count("nets", list(_elsewhere(found, parts)), "parts on other nets")
         yield of.count("values", list(_other_values(found, parts)), "resistors have other values")
+        yield of.count("options", list(_loosened(found, design)), "options of the simulator")
 
 
 def _loose(found: Netlist) -> Iterator[str]:
@@ -57,6 +65,20 @@ def _loose(found: Netlist) -> Iterator[str]:
     if not found.printed:
         yield "nothing is printed"
     yield from sorted({*found.printed} - found.defined)
+
+
+def _loosened(found: Netlist, design: Design) -> Iterator[str]:
+    """Tolerances that are too loose, temperatures that no figure is of, and other options."""
+    bases = any(element.name[0] == "Q" for element in found.elements)
+    most = dict([_RELATIVE]) | _DEFAULTS | (_OF_BASES if bases else {})
+    held = design.electrical.strings.regulation
+    known = {"temp": {_ROOM_C, *(held.temperatures_c if held else ())}, "tnom": {_ROOM_C}}
+    for name, text in found.options:
+        value = figure(text)
+        if value not in known.get(name, ()) and not 0 < (value or 0.0) <= most.get(name, 0.0):
+            yield f"{name} {text}"
+    needed = {_RELATIVE[0], *(_OF_BASES if bases else ())}
+    yield from (f"no {name}" for name in sorted(needed - {name for name, _ in found.options}))
 
 
 def _modelled(found: Netlist, parts: Mapping[str, Part]) -> Iterator[tuple[Element, Part]]:

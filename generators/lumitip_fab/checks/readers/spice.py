@@ -1,6 +1,7 @@
 """Netlists for ngspice: elements, nodes and what is printed."""
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,11 +26,7 @@ class Element:
     @property
     def value(self) -> float | None:
         """Its value in V, A, ohm, farad or henry; none where it is a formula or a model."""
-        found = _FIGURE.match(self.rest[0]) if self.rest else None
-        if found is None:
-            return None
-        scale: float = 10.0 ** _POWERS[(found[2] or "").lower()]
-        return float(found[1]) * scale
+        return figure(self.rest[0]) if self.rest else None
 
 
 @dataclass(frozen=True)
@@ -45,6 +42,8 @@ class Netlist:
     defined: frozenset[str]
     """Names that its commands compute."""
     printed: tuple[str, ...]
+    options: tuple[tuple[str, str], ...]
+    """Options of the simulator with their values, in the order of the file."""
 
 
 def read_netlist(path: Path) -> Netlist:
@@ -61,6 +60,7 @@ def read_netlist(path: Path) -> Netlist:
     if not words or words[-1] != [".end"]:
         raise OutputError("has no end")
     elements, models, defined, printed = [], set(), set(), []
+    options: list[tuple[str, str]] = []
     inside = ""
     for first, *rest in words:
         match first.lower():
@@ -71,6 +71,8 @@ def read_netlist(path: Path) -> Netlist:
                 inside = ""
             case ".model":
                 models |= {*rest[:1]}
+            case ".option" | ".options" | ".opt" | "option":
+                options += _pairs(rest)
             case "let":
                 defined |= {*rest[:1]}
             case "meas":
@@ -87,7 +89,24 @@ def read_netlist(path: Path) -> Netlist:
         frozenset(models),
         frozenset(defined),
         tuple(printed),
+        tuple(options),
     )
+
+
+def _pairs(words: list[str]) -> Iterator[tuple[str, str]]:
+    """Each `name=value`, however it is spaced."""
+    for word in re.sub(r"\s*=\s*", "=", " ".join(words)).split():
+        name, _, value = word.partition("=")
+        yield name.lower(), value
+
+
+def figure(text: str) -> float | None:
+    """A figure with its power as ngspice reads it; none where there is none."""
+    found = _FIGURE.match(text)
+    if found is None:
+        return None
+    scale: float = 10.0 ** _POWERS[(found[2] or "").lower()]
+    return float(found[1]) * scale
 
 
 def _element(name: str, words: list[str]) -> Element:
