@@ -141,6 +141,42 @@ def test_a_matrix_that_is_no_motion(
     assert failing(damaged) == {"manifest.matrices"}
 
 
+@pytest.mark.parametrize(
+    ("path", "keys", "value"),
+    [
+        ("backing/emitter_backing.stl", ("volume_mm3",), 6600.0),
+        ("holder/holder.stl", ("height_mm",), 38.2),
+        ("mould/clamp.stl", ("side_mm2",), 2500.0),
+        ("mould/prop.stl", ("base_mm2",), 190.0),
+        ("fit/fit_plate.stl", ("top_mm2",), 0.0),
+        ("mould/receiver_mould.stl", ("cast_ml",), 3.8),
+        ("mould/emitter_casting.md", ("part_b_g",), 25.0),
+        ("mould/emitter_casting.md", ("mix_ml",), "much"),
+        ("bom.csv", ("lines", 3, "quantity"), 7),
+        ("bom.csv", ("lines", 3, "part"), "none"),
+        ("bom.csv", ("total",), 1.0),
+        ("order.csv", ("lines", 2, "packs"), 7),
+        ("order.csv", ("single",), 7.0),
+        ("boards/receiver/receiver.kicad_pcb", ("parts", 0, "part"), "none"),
+        ("robot/lumitip.urdf", ("emitter_g",), 10.0),
+        ("mask/emitter_mask.svg", ("apertures",), 31),
+        ("mask/receiver_mask.svg", ("flaps", 0, "width_mm"), 7.0),
+    ],
+)
+def test_a_fact_that_the_file_has_not(
+    damaged: Path, path: str, keys: tuple[str | int, ...], value: object
+) -> None:
+    file = damaged / "manifest.json"
+    record = json.loads(file.read_text())
+    facts: Any = record["files"][path]["facts"]
+    for key in keys[:-1]:
+        facts = facts[key]
+    assert facts[keys[-1]] != value
+    facts[keys[-1]] = value
+    file.write_text(json.dumps(record))
+    assert failing(damaged) == {"manifest.facts"}
+
+
 def test_no_manifest(damaged: Path) -> None:
     (damaged / "manifest.json").unlink()
     assert failing(damaged) == {"manifest.files", "manifest.frames"}

@@ -1,13 +1,16 @@
-"""`manifest.json` against the files it lists: their bytes, and the frames it says they are in."""
+"""`manifest.json` against the files it lists: their bytes, their facts, and their frames."""
 
 import os
 from collections.abc import Iterator, Mapping
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePath
+from xml.etree.ElementTree import ParseError
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lumitip_fab.checks.facts import Facts, other_facts
+from lumitip_fab.checks.readers import MALFORMED
 from lumitip_fab.checks.readers.vertices import corners_mm
 from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design
@@ -56,9 +59,21 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     for path, entry in sorted(recorded.files.items()):
         if path in odd or path in no_files:
             continue
+        if entry.facts and not changed:
+            yield _facts(outputs, path, entry.facts, design)
         placed = path.startswith(("backing/", "interface/", "mould/", "mask/", "gauge/"))
         if path.endswith(".stl") and placed and entry.frame:
             yield _frame(outputs, path, np.array(entry.to_sensor), design)
+
+
+def _facts(outputs: Path, path: str, facts: Facts, design: Design) -> Measurement:
+    """Figures of a file that differ from those in the file."""
+    name = f"{_FILE}: {path}"
+    try:
+        wrong = list(other_facts(outputs, path, facts, design))
+    except (OutputError, OSError, ParseError, *MALFORMED) as error:
+        return unreadable("manifest.facts", name, f"cannot be compared: {error!r:.200}")
+    return count("manifest.facts", name, wrong, "facts that the file has not")
 
 
 def _as_listed(path: Path, entry: manifest.Entry) -> bool:
