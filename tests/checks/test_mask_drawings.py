@@ -8,6 +8,7 @@ import ezdxf
 import pytest
 
 from damages import cut_short, failing, passing
+from hidden_drawings import HIDDEN, redrawn
 
 pytestmark = pytest.mark.slow
 
@@ -95,6 +96,7 @@ DAMAGES: dict[str, tuple[Callable[[Path], None], set[str]]] = {
     "drawing in inches": (dxf_in_inches, {"dxf", *FLAPS}),
     "drawing truncated": (truncated(DXF), {"dxf", *FLAPS}),
     "drawing missing": (lambda out: (out / DXF).unlink(), {"dxf", *FLAPS}),
+    **{change.__name__: (redrawn(DXF, change), {"dxf", *FLAPS}) for change in HIDDEN},
     "SVG hole moved": (svg_hole_moved, {"svg"}),
     "SVG in inches": (svg_in_inches, {"svg"}),
     "SVG band moved": (svg_band_moved, {"svg"}),

@@ -10,6 +10,7 @@ from manifold3d import CrossSection
 
 from damages import Body, box, carve, cut_short, failing, flip_a_triangle, passing, swap
 from finger_notes import written_masks
+from hidden_drawings import HIDDEN, redrawn
 from lumitip_fab.config.load import load
 
 pytestmark = pytest.mark.slow
@@ -167,6 +168,7 @@ CUTS: dict[str, tuple[Damage, set[str]]] = {
         {"outline"},
     ),
     "in inches": (edited(in_inches), {"readable"}),
+    **{change.__name__: (redrawn(CUT, change), {"readable"}) for change in HIDDEN},
     "missing": (lambda out: (out / CUT).unlink(), {"readable"}),
     "cut short": (lambda out: cut_short(out / CUT, 20000), {"readable"}),
     "of the other finger": (

@@ -16,6 +16,7 @@ from ezdxf import units
 from lumitip_fab.checks.mould import Probe
 from lumitip_fab.checks.readers import MALFORMED, solids
 from lumitip_fab.checks.readers.mask_page import PageError, read_page
+from lumitip_fab.checks.readers.plain_dxf import read_plain_dxf
 from lumitip_fab.checks.result import Measure, Measurement, Subject, measured, unreadable
 from lumitip_fab.design import Design, Finger, Insert
 from lumitip_fab.design.frames import applied
@@ -78,7 +79,7 @@ def _read_film(path: Path) -> Any:
         OutputError: if the file is missing, damaged, not in mm, or shows something else.
     """
     try:
-        document = ezdxf.readfile(path)
+        document = read_plain_dxf(path)
         drawn = list(document.modelspace())
         kinds = [(e.dxf.layer, e.dxftype()) for e in drawn]
         if document.units != units.MM or kinds != [("CUT", "LWPOLYLINE")] or not drawn[0].closed:

@@ -16,6 +16,7 @@ from lumitip_fab.checks.mask_drawings import Film, read_film
 from lumitip_fab.checks.mask_holes import apart, edges_apart, sizes_at
 from lumitip_fab.checks.readers import MALFORMED
 from lumitip_fab.checks.readers.mask_page import PageError, Points
+from lumitip_fab.checks.readers.plain_dxf import read_plain_dxf
 from lumitip_fab.checks.result import Measure, Measurement, Subject, measured, unreadable
 from lumitip_fab.design import Design, Finger
 
@@ -74,7 +75,7 @@ def _read(path: Path) -> Drawn:
     rings: dict[str, list[Points]] = {"CUT": [], "WINDOW": []}
     circles, folds, others = [], [], []
     try:
-        document = ezdxf.readfile(path)
+        document = read_plain_dxf(path)
         if document.units != units.MM:
             raise PageError("its unit is not the millimetre")
         for e in document.modelspace():

@@ -14,6 +14,7 @@ from ezdxf import units
 from lumitip_fab.checks.mask_holes import Black, place, sort_out
 from lumitip_fab.checks.readers import MALFORMED
 from lumitip_fab.checks.readers.mask_page import PageError, Points, Subpath
+from lumitip_fab.checks.readers.plain_dxf import read_plain_dxf
 from lumitip_fab.design import Mask
 
 _SVG = "{http://www.w3.org/2000/svg}"
@@ -100,7 +101,7 @@ def read_dxf(path: Path) -> Drawing:
         PageError: if it is missing, damaged, not in mm, or lacks a layer's drawing.
     """
     try:
-        document = ezdxf.readfile(path)
+        document = read_plain_dxf(path)
         space = document.modelspace()
         layers: dict[str, list[Any]] = {}
         for entity in space:
