@@ -1,5 +1,4 @@
-"""Catalogue entries of controllers, and of what boards outside the fingers carry: sockets,
-regulators, transistors."""
+"""Catalogue entries of controllers, and of sockets, regulators and transistors beside them."""
 
 from typing import Annotated, Literal, Self
 
@@ -84,8 +83,7 @@ class Plug(Strict):
     supply: PinName
     """Pin that takes the regulated supply."""
     least_v: float = Field(default=4.4, gt=0, le=30)
-    """Least voltage at the supply pin with which the controller works (V). The default is assumed:
-    what USB 2.0 gives a device at least, and a board that USB feeds has a diode behind that."""
+    """Least voltage at the supply pin with which it works (V); by default USB's least, assumed."""
     regulated: PinName
     """Pin that feeds the receiver."""
 
@@ -206,8 +204,7 @@ class Module(Ordered):
     keep_out_mm: tuple[tuple[Offset, Offset, Offset, Offset], ...]
     """Rectangles under the antenna without copper on either side: left, low, right, high."""
     names: Annotated[tuple[Pin, ...], Field(min_length=8, max_length=128)]
-    """Name of each pad from pad 1: ports such as `P0_04`, `GND`, `VDD`, `VDDH`, `VBUS`, `USB_DM`,
-    `USB_DP`, `SWDIO`, `SWDCLK`."""
+    """Name of each pad from pad 1: ports such as `P0_04`, `GND`, and those wired by name."""
     pads_mm: tuple[tuple[Offset, Offset, Length, Length], ...]
     """Middle, width and height of each pad."""
     ports: dict[Pin, Pin]
@@ -242,8 +239,8 @@ class Controller(Entry):
     analog_pins: tuple[Pin, ...] = Field(min_length=1)
     """Analog inputs in the order in which they are used; those of `pulled_up_ohm` come last."""
     pulled_up_ohm: dict[Pin, float] = Field(default_factory=dict)
-    """Pull-up resistor on the controller, by analog input: it stands in parallel with that of the
-    multiplexer, so that the signal is smaller. Such pins are used when no other is left."""
+    """Pull-up resistor on the controller, by analog input: beside that of the multiplexer it makes
+    the signal smaller. Such pins are used when no other is left."""
     unlimited_analog_pins: bool = False
     """Whether there are as many inputs as needed: for benchmarks only."""
     select_pins: tuple[Pin, ...] = Field(min_length=1)

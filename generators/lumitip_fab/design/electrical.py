@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from lumitip_fab.design.feed import Feed
+
 
 @dataclass(frozen=True)
 class Regulation:
@@ -208,27 +210,6 @@ class Indicator:
     """Its rated power."""
     load: float
     """Largest fraction of its rated power."""
-
-
-@dataclass(frozen=True)
-class Feed:
-    """The way from a wire to the controller's supply pin."""
-
-    board: str
-    diode: str | None
-    """In the catalogue; none where wire and pin are joined."""
-    wire: str
-    """Name of the wire."""
-    pin: str
-    """Name of the controller's pin."""
-    wire_v: float
-    """Least voltage at the wire's end."""
-    drawn_ma: float
-    """Largest current of the controller."""
-    drop_v: float
-    """Largest forward voltage of the diode at that current; 0 without one."""
-    least_v: float
-    """With which the controller works."""
 
 
 @dataclass(frozen=True)

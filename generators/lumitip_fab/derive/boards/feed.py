@@ -23,7 +23,7 @@ from lumitip_fab.derive.wiring.cabling import COPPER_OHM_MM2_PER_M
 from lumitip_fab.derive.wiring.ratings import SUPPLY_TOLERANCE
 from lumitip_fab.design import Component, Point
 from lumitip_fab.design.components import chip
-from lumitip_fab.design.electrical import Feed
+from lumitip_fab.design.feed import Feed
 
 DIODE = "schottky diode"
 REF = "VD1"
