@@ -184,6 +184,6 @@ def test_no_manifest(damaged: Path) -> None:
 
 def test_every_check_passes_undamaged(outputs: Path) -> None:
     outcome = run_checks(outputs, ["manifest"])
-    names = ("kinds", "files", "strays", "matrices", "frames")
+    names = ("kinds", "files", "strays", "matrices", "facts", "frames")
     assert outcome.names == {f"manifest.{name}" for name in names}
     assert outcome.failed == ()
