@@ -5,78 +5,78 @@ import struct
 from collections.abc import Callable
 from typing import Any
 
-Told = dict[str, Any]
+Scene = dict[str, Any]
 
 
-def node(told: Told, name: str) -> Told:
+def node(scene: Scene, name: str) -> Scene:
     """The node of a group or a body."""
-    return next(n for n in told["nodes"] if n["name"] == name)
+    return next(n for n in scene["nodes"] if n["name"] == name)
 
 
-def move(told: Told, name: str, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
+def move(scene: Scene, name: str, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
     """Move a body in its group, mm."""
-    at = node(told, name)
+    at = node(scene, name)
     before = at.get("translation", [0.0, 0.0, 0.0])
     at["translation"] = [a + b / 1000 for a, b in zip(before, (x, y, z), strict=True)]
 
 
-def shift(told: Told, group: str, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
+def shift(scene: Scene, group: str, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
     """Move a group in the scene, mm."""
-    matrix = node(told, group)["matrix"]
+    matrix = node(scene, group)["matrix"]
     for place, by_mm in enumerate((x, y, z)):
         matrix[12 + place] += by_mm / 1000
 
 
-def material(told: Told, name: str) -> Told:
+def material(scene: Scene, name: str) -> Scene:
     """The material of a body."""
-    return told["materials"][primitive(told, name)["material"]]
+    return scene["materials"][primitive(scene, name)["material"]]
 
 
-def primitive(told: Told, name: str) -> Told:
+def primitive(scene: Scene, name: str) -> Scene:
     """The triangles of a body with their material."""
-    return told["meshes"][node(told, name)["mesh"]]["primitives"][0]
+    return scene["meshes"][node(scene, name)["mesh"]]["primitives"][0]
 
 
-def film_like_the_board(told: Told) -> None:
+def film_like_the_board(scene: Scene) -> None:
     """One colour for two layers."""
-    of_board = material(told, "emitter.board")["pbrMetallicRoughness"]["baseColorFactor"]
-    factors = material(told, "emitter.film")["pbrMetallicRoughness"]["baseColorFactor"]
+    of_board = material(scene, "emitter.board")["pbrMetallicRoughness"]["baseColorFactor"]
+    factors = material(scene, "emitter.film")["pbrMetallicRoughness"]["baseColorFactor"]
     factors[:3] = of_board[:3]
-    material(told, "emitter.film").pop("alphaMode")
+    material(scene, "emitter.film").pop("alphaMode")
 
 
-def materials_lost(told: Told) -> None:
+def materials_lost(scene: Scene) -> None:
     """No body has one."""
-    for mesh in told["meshes"]:
+    for mesh in scene["meshes"]:
         del mesh["primitives"][0]["material"]
 
 
-def colours_lost(told: Told) -> None:
+def colours_lost(scene: Scene) -> None:
     """Materials without what they look like."""
-    for each in told["materials"]:
+    for each in scene["materials"]:
         del each["pbrMetallicRoughness"]
 
 
-def opaque_silicone(told: Told) -> None:
-    """What hides the board."""
-    del material(told, "emitter.silicone")["alphaMode"]
+def opaque_silicone(scene: Scene) -> None:
+    """It hides the board."""
+    del material(scene, "emitter.silicone")["alphaMode"]
 
 
-def other_material(told: Told) -> None:
+def other_material(scene: Scene) -> None:
     """A backing that looks like the parts of a board."""
-    primitive(told, "receiver.backing")["material"] = primitive(told, "emitter.D1")["material"]
+    primitive(scene, "receiver.backing")["material"] = primitive(scene, "emitter.D1")["material"]
 
 
 COLOURS = (film_like_the_board, materials_lost, colours_lost, opaque_silicone, other_material)
 """Damages of what a viewer shows."""
 
 
-def rewritten(data: bytes, damage: Callable[[Told], None]) -> bytes:
+def rewritten(data: bytes, damage: Callable[[Scene], None]) -> bytes:
     """A GLB file with its tables changed."""
     size = struct.unpack_from("<I", data, 12)[0]
-    told, rest = json.loads(data[20 : 20 + size]), data[20 + size :]
-    damage(told)
-    text = json.dumps(told).encode()
+    scene, rest = json.loads(data[20 : 20 + size]), data[20 + size :]
+    damage(scene)
+    text = json.dumps(scene).encode()
     text += b" " * (-len(text) % 4)
     head = struct.pack("<4sII", b"glTF", 2, 20 + len(text) + len(rest))
     return head + struct.pack("<I4s", len(text), b"JSON") + text + rest
@@ -85,8 +85,8 @@ def rewritten(data: bytes, damage: Callable[[Told], None]) -> bytes:
 def opened(data: bytes, body: str) -> bytes:
     """Make the first triangle of a body a corner."""
     size = struct.unpack_from("<I", data, 12)[0]
-    told = json.loads(data[20 : 20 + size])
-    primitive = told["meshes"][node(told, body)["mesh"]]["primitives"][0]
-    view = told["bufferViews"][told["accessors"][primitive["indices"]]["bufferView"]]
+    scene = json.loads(data[20 : 20 + size])
+    primitive = scene["meshes"][node(scene, body)["mesh"]]["primitives"][0]
+    view = scene["bufferViews"][scene["accessors"][primitive["indices"]]["bufferView"]]
     at = 28 + size + view["byteOffset"]
     return data[:at] + data[at + 4 : at + 8] + data[at + 4 :]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from damages import failing
-from glb_damages import COLOURS, Told, move, node, opened, rewritten
+from glb_damages import COLOURS, Scene, move, node, opened, rewritten
 from lumitip_fab.checks import assembly, drawings
 
 pytestmark = pytest.mark.slow
@@ -18,74 +18,74 @@ SVG = "assembly/receiver_exploded.svg"
 EVERY = {name.removeprefix("assembly.") for name in assembly.NAMES}
 
 
-def led_moved(told: Told) -> None:
-    move(told, "emitter.D7", x=0.1)
+def led_moved(scene: Scene) -> None:
+    move(scene, "emitter.D7", x=0.1)
 
 
-def photodetector_moved(told: Told) -> None:
-    move(told, "receiver.Q32", y=-0.1)
+def photodetector_moved(scene: Scene) -> None:
+    move(scene, "receiver.Q32", y=-0.1)
 
 
-def multiplexer_raised(told: Told) -> None:
-    move(told, "receiver.U1", z=0.6)
+def multiplexer_raised(scene: Scene) -> None:
+    move(scene, "receiver.U1", z=0.6)
 
 
-def multiplexer_through_the_skin(told: Told) -> None:
-    move(told, "receiver.U1", z=3.0)
+def multiplexer_through_the_skin(scene: Scene) -> None:
+    move(scene, "receiver.U1", z=3.0)
 
 
-def finger_shifted(told: Told) -> None:
-    node(told, "receiver")["matrix"][12] += 0.0001
+def finger_shifted(scene: Scene) -> None:
+    node(scene, "receiver")["matrix"][12] += 0.0001
 
 
-def finger_nearer(told: Told) -> None:
-    node(told, "receiver")["matrix"][14] += 0.0001
+def finger_nearer(scene: Scene) -> None:
+    node(scene, "receiver")["matrix"][14] += 0.0001
 
 
-def lean_removed(told: Told) -> None:
-    matrix = node(told, "receiver")["matrix"]
+def lean_removed(scene: Scene) -> None:
+    matrix = node(scene, "receiver")["matrix"]
     matrix[:12] = np.eye(4).ravel()[:12].tolist()
 
 
-def opening_edited(told: Told) -> None:
-    told["scenes"][0]["extras"]["opening_mm"] += 0.1
+def opening_edited(scene: Scene) -> None:
+    scene["scenes"][0]["extras"]["opening_mm"] += 0.1
 
 
-def opening_unstated(told: Told) -> None:
-    del told["scenes"][0]["extras"]
+def opening_unstated(scene: Scene) -> None:
+    del scene["scenes"][0]["extras"]
 
 
-def film_lifted(told: Told) -> None:
-    move(told, "receiver.film", z=0.2)
+def film_lifted(scene: Scene) -> None:
+    move(scene, "receiver.film", z=0.2)
 
 
-def film_moved_back(told: Told) -> None:
-    move(told, "receiver.film", y=-1.5)
+def film_moved_back(scene: Scene) -> None:
+    move(scene, "receiver.film", y=-1.5)
 
 
-def film_behind_the_pads(told: Told) -> None:
+def film_behind_the_pads(scene: Scene) -> None:
     """The skin so far back that the gripper is closed before the fingers meet."""
-    move(told, "receiver.film", z=-12.0)
+    move(scene, "receiver.film", z=-12.0)
 
 
-def backing_sunk(told: Told) -> None:
-    move(told, "emitter.backing", z=-0.2)
+def backing_sunk(scene: Scene) -> None:
+    move(scene, "emitter.backing", z=-0.2)
 
 
-def board_turned_out(told: Told) -> None:
-    move(told, "emitter.board", x=0.3)
+def board_turned_out(scene: Scene) -> None:
+    move(scene, "emitter.board", x=0.3)
 
 
-def part_renamed(told: Told) -> None:
-    node(told, "receiver.Q3")["name"] = "receiver.Q33"
+def part_renamed(scene: Scene) -> None:
+    node(scene, "receiver.Q3")["name"] = "receiver.Q33"
 
 
-def layer_missing(told: Told) -> None:
-    node(told, "emitter.silicone")["name"] = "silicone"
+def layer_missing(scene: Scene) -> None:
+    node(scene, "emitter.silicone")["name"] = "silicone"
 
 
-def no_nodes(told: Told) -> None:
-    del told["nodes"]
+def no_nodes(scene: Scene) -> None:
+    del scene["nodes"]
 
 
 SCENE = {
@@ -111,7 +111,7 @@ SCENE = {
 
 
 @pytest.mark.parametrize("damage", SCENE, ids=lambda d: d.__name__)
-def test_a_damaged_scene(damage: Callable[[Told], None], damaged: Path) -> None:
+def test_a_damaged_scene(damage: Callable[[Scene], None], damaged: Path) -> None:
     file = damaged / GLB
     file.write_bytes(rewritten(file.read_bytes(), damage))
     assert failing(damaged, "assembly") == SCENE[damage]
@@ -201,8 +201,8 @@ def part_astray(text: str) -> str:
     """All of Q5 half a millimetre to the right."""
     start = text.index('<g id="Q5">')
     end = text.index("</g>", start)
-    told = re.sub(r"([ML])(-?[\d.]+)", lambda m: f"{m[1]}{float(m[2]) + 0.5:.2f}", text[start:end])
-    return text[:start] + told + text[end:]
+    scene = re.sub(r"([ML])(-?[\d.]+)", lambda m: f"{m[1]}{float(m[2]) + 0.5:.2f}", text[start:end])
+    return text[:start] + scene + text[end:]
 
 
 EVERY_DRAWING = {name.removeprefix("assembly.") for name in drawings.NAMES}
@@ -236,5 +236,5 @@ def test_the_undamaged_assembly_passes(outputs: Path) -> None:
 
 
 def test_every_check_fails_alone_or_among_few() -> None:
-    told = [names for names in SCENE.values() if names != EVERY]
-    assert set().union(*told) == EVERY - {"bodies"}
+    scene = [names for names in SCENE.values() if names != EVERY]
+    assert set().union(*scene) == EVERY - {"bodies"}

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from damages import failing
-from glb_damages import COLOURS, Told, move, node, opened, rewritten, shift
+from glb_damages import COLOURS, Scene, move, node, opened, rewritten, shift
 from lumitip_fab.checks import system
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.docs.spec import rows
@@ -17,86 +17,86 @@ SCENE = {"bodies", "stack", "place", "fingers", "tcp", "interference", "axis", "
 DRAWING = {"drawing", "drawing_page"}
 
 
-def robot_away(told: Told) -> None:
-    shift(told, "robot", z=-0.1)
+def robot_away(scene: Scene) -> None:
+    shift(scene, "robot", z=-0.1)
 
 
-def coupling_low(told: Told) -> None:
-    shift(told, "coupling", z=-0.1)
+def coupling_low(scene: Scene) -> None:
+    shift(scene, "coupling", z=-0.1)
 
 
-def lower_part_high(told: Told) -> None:
-    shift(told, "flange_lower", z=0.1)
+def lower_part_high(scene: Scene) -> None:
+    shift(scene, "flange_lower", z=0.1)
 
 
-def upper_part_high(told: Told) -> None:
-    shift(told, "flange_upper", z=0.1)
+def upper_part_high(scene: Scene) -> None:
+    shift(scene, "flange_upper", z=0.1)
 
 
-def upper_part_askew(told: Told) -> None:
-    shift(told, "flange_upper", x=0.1)
+def upper_part_askew(scene: Scene) -> None:
+    shift(scene, "flange_upper", x=0.1)
 
 
-def board_in_the_wall(told: Told) -> None:
-    shift(told, "flange_board", x=0.4)
+def board_in_the_wall(scene: Scene) -> None:
+    shift(scene, "flange_board", x=0.4)
 
 
-def coupling_without_its_recess(told: Told) -> None:
-    primitive = told["meshes"][node(told, "coupling.body")["mesh"]]["primitives"][0]
-    told["accessors"][primitive["indices"]]["count"] = 3  # one triangle of its wall is left
+def coupling_without_its_recess(scene: Scene) -> None:
+    primitive = scene["meshes"][node(scene, "coupling.body")["mesh"]]["primitives"][0]
+    scene["accessors"][primitive["indices"]]["count"] = 3  # one triangle of its wall is left
 
 
-def gripper_high(told: Told) -> None:
-    shift(told, "gripper", z=0.1)
+def gripper_high(scene: Scene) -> None:
+    shift(scene, "gripper", z=0.1)
 
 
-def holder_high(told: Told) -> None:
-    shift(told, "holder", z=0.1)
+def holder_high(scene: Scene) -> None:
+    shift(scene, "holder", z=0.1)
 
 
-def holder_off_its_board(told: Told) -> None:
-    move(told, "holder.tray", z=0.5)
+def holder_off_its_board(scene: Scene) -> None:
+    move(scene, "holder.tray", z=0.5)
 
 
-def emitter_aside(told: Told) -> None:
-    shift(told, "emitter", x=0.1)
+def emitter_aside(scene: Scene) -> None:
+    shift(scene, "emitter", x=0.1)
 
 
-def emitter_in_the_receiver(told: Told) -> None:
-    shift(told, "emitter", x=-36.0)
+def emitter_in_the_receiver(scene: Scene) -> None:
+    shift(scene, "emitter", x=-36.0)
 
 
-def fingers_high(told: Told) -> None:
+def fingers_high(scene: Scene) -> None:
     for finger in ("emitter", "receiver"):
-        shift(told, finger, z=0.1)
+        shift(scene, finger, z=0.1)
 
 
-def led_moved(told: Told) -> None:
-    move(told, "emitter.D7", x=0.1)
+def led_moved(scene: Scene) -> None:
+    move(scene, "emitter.D7", x=0.1)
 
 
-def centre_edited(told: Told) -> None:
-    told["scenes"][0]["extras"]["tcp_mm"] += 0.1
+def centre_edited(scene: Scene) -> None:
+    scene["scenes"][0]["extras"]["tcp_mm"] += 0.1
 
 
-def centre_unstated(told: Told) -> None:
-    del told["scenes"][0]["extras"]["tcp_mm"]
+def centre_unstated(scene: Scene) -> None:
+    del scene["scenes"][0]["extras"]["tcp_mm"]
 
 
-def body_renamed(told: Told) -> None:
-    node(told, "holder.tray")["name"] = "tray"
+def body_renamed(scene: Scene) -> None:
+    node(scene, "holder.tray")["name"] = "tray"
 
 
-def no_nodes(told: Told) -> None:
-    del told["nodes"]
+def no_nodes(scene: Scene) -> None:
+    del scene["nodes"]
 
 
-def gripper_aside(told: Told) -> None:
-    move(told, "gripper.envelope", y=0.36)
+def gripper_aside(scene: Scene) -> None:
+    move(scene, "gripper.envelope", y=0.36)
 
 
-def robot_aside(told: Told) -> None:
-    move(told, "robot.flange", x=0.36)
+def robot_aside(scene: Scene) -> None:
+    move(scene, "robot.flange", x=0.36)
 
 
 MOVED = {
@@ -125,7 +125,7 @@ MOVED = {
 
 
 @pytest.mark.parametrize("damage", MOVED, ids=lambda d: d.__name__)
-def test_a_damaged_scene(damage: Callable[[Told], None], damaged: Path) -> None:
+def test_a_damaged_scene(damage: Callable[[Scene], None], damaged: Path) -> None:
     file = damaged / GLB
     file.write_bytes(rewritten(file.read_bytes(), damage))
     assert failing(damaged, "system") == MOVED[damage]
@@ -198,21 +198,21 @@ def test_a_damaged_drawing(name: str, damaged: Path) -> None:
 
 def test_every_check_fails_alone_or_among_few(outputs: Path) -> None:
     design = read_design(outputs / "design.json")
-    told = {m.check.removeprefix("system.") for m in system.measure(outputs, design)}
-    assert told == SCENE | DRAWING
+    scene = {m.check.removeprefix("system.") for m in system.measure(outputs, design)}
+    assert scene == SCENE | DRAWING
     assert failing(outputs, "system") == set()
     few = [names for names in MOVED.values() if names != SCENE]
     few += [names for _, names in DRAWN.values() if names != DRAWING]
-    assert set().union(*few) == told - {"bodies"}
+    assert set().union(*few) == scene - {"bodies"}
 
 
 def test_the_figure_that_spec_tells_is_that_of_the_scene(outputs: Path) -> None:
     design = read_design(outputs / "design.json")
-    (told,) = [row for row in rows(design) if row.quantity == "... from the robot's flange"]
+    (scene,) = [row for row in rows(design) if row.quantity == "... from the robot's flange"]
     (measured,) = [
         m for m in system.measure(outputs, design) if m.check == "system.tcp" and m.subject == GLB
     ]
-    assert told.computed == f"{measured.measured:.1f} mm"
+    assert scene.computed == f"{measured.measured:.1f} mm"
 
 
 def test_without_a_coupling_it_begins_at_the_gripper(design_dir: Path, tmp_path: Path) -> None:

@@ -5,12 +5,13 @@ import math
 from collections.abc import Iterator
 
 from lumitip_fab.checks.board_read import ReadBoard
+from lumitip_fab.checks.plug_in import FROM_SUPPLY, TO_EMITTER, at_contact
 from lumitip_fab.checks.result import Measurement
 
 _CATHODE, _ANODE = "1", "2"
-_CABLES = ("J6", "J7")
-"""Wires to the emitter and from the supply. Where both have a wire of 5 V, that of J6 is behind the
-board's fuse and MOSFET, as the controller is."""
+_CABLES = (TO_EMITTER, FROM_SUPPLY)
+"""Wires to the emitter and from the supply. Where both have a wire of 5 V, that to the emitter is
+behind the board's fuse and MOSFET, as the controller is."""
 _CONDUCT = ("resistor", "inductor", "fuse", "schottky diode")
 """Kinds of parts with two terminals that a current goes through."""
 
@@ -21,7 +22,7 @@ def measure_feed(read: ReadBoard) -> Iterator[Measurement]:
     feed = read.design.electrical.feed
     if feed is None or feed.board != read.name:
         return
-    ends = [_named(read, cable, feed.wire) for cable in _CABLES]
+    ends = [at_contact(read, cable, feed.wire) for cable in _CABLES]
     wire, pin = next((end for end in ends if end is not None), None), _socket(read, feed.pin)
     if feed.diode is None:
         joined = [] if wire is not None and wire == pin else [f"{feed.pin} is not on {feed.wire}"]
@@ -49,13 +50,7 @@ def _wrong(read: ReadBoard, wire: int | None, pin: int | None) -> Iterator[str]:
         yield "no diode from wire to pin"
 
 
-def _named(read: ReadBoard, ref: str, name: str) -> int | None:
-    """Copper of the contact with a name."""
-    pins: tuple[str, ...] = next((d.pins for d in read.components if d.ref == ref), ())
-    return read.group(ref, pins.index(name) + 1) if name in pins else None
-
-
 def _socket(read: ReadBoard, pin: str) -> int | None:
     """Copper of the controller's pin, at its socket."""
     sockets = [d.ref for d in read.components if d.kind == "socket" and pin in d.pins]
-    return _named(read, sockets[0], pin) if sockets else None
+    return at_contact(read, sockets[0], pin) if sockets else None

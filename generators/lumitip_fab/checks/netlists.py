@@ -21,7 +21,7 @@ _OF_PART = frozenset("DMQ")
 _RELATIVE = ("reltol", 1e-4)
 """Error of a simulation that figures of three digits allow; ngspice by itself has 1e-3."""
 _DEFAULTS = {"abstol": 1e-12, "vntol": 1e-6, "chgtol": 1e-14, "gmin": 1e-12, "trtol": 7.0}
-"""What ngspice has by itself, beyond which no netlist goes."""
+"""Those of ngspice by itself, beyond which no netlist goes."""
 _OF_BASES = {"abstol": 1e-15, "chgtol": 1e-17, "gmin": 1e-14}
 """Beside the base current of a detector in the dark, some 0.1 nA."""
 _ROOM_C = 26.85

@@ -14,7 +14,9 @@ MELTING_SHARE = 20.0
 """Of its melting I²t that a fuse takes as often as a robot is switched on, in percent."""
 _STEP_S = 2e-9
 _END_S = 100e-6
-_BREAKOUT, _FROM_SUPPLY, _TO_EMITTER = "breakout", "J7", "J6"
+FROM_SUPPLY, TO_EMITTER = "J7", "J6"
+"""Cables of the breakout."""
+_BREAKOUT = "breakout"
 _CONTACTS = "J1"
 _GROUND = "GND"
 _FUSE, _MOSFET, _TVS = "F1", "Q1", "D1"
@@ -56,18 +58,18 @@ def _poles(read: ReadBoard) -> tuple[int | None, int | None]:
         supply, ground = (read.group(_CONTACTS, first.get(k, "")) for k in ("supply", "ground"))
         return supply, ground
     name = read.design.emitter.connector.supply
-    return _wire(read, _FROM_SUPPLY, name), _wire(read, _FROM_SUPPLY, _GROUND)
+    return at_contact(read, FROM_SUPPLY, name), at_contact(read, FROM_SUPPLY, _GROUND)
 
 
-def _wire(read: ReadBoard, ref: str, name: str) -> int | None:
-    """Copper of the wire pad with a name."""
+def at_contact(read: ReadBoard, ref: str, name: str) -> int | None:
+    """Copper of the wire pad, or the contact, with a name."""
     pins: tuple[str, ...] = next((d.pins for d in read.components if d.ref == ref), ())
     return read.group(ref, pins.index(name) + 1) if name in pins else None
 
 
 def _lead(read: ReadBoard, name: str) -> int | None:
     """Copper at a lead of the MOSFET."""
-    return _wire(read, _MOSFET, name)
+    return at_contact(read, _MOSFET, name)
 
 
 def _wrong_way(read: ReadBoard, entry: int | None, ground: int | None) -> Iterator[str]:
@@ -82,9 +84,9 @@ def _wrong_way(read: ReadBoard, entry: int | None, ground: int | None) -> Iterat
     if gate in (None, entry, drain, source, ground) or {gate, ground} not in pulled:
         yield f"{_MOSFET}: gate"
     if read.name == _BREAKOUT:
-        fed = _wire(read, _TO_EMITTER, read.design.emitter.connector.supply)
+        fed = at_contact(read, TO_EMITTER, read.design.emitter.connector.supply)
         if fed is None or fed != source:
-            yield f"{_TO_EMITTER}: not behind {_MOSFET}"
+            yield f"{TO_EMITTER}: not behind {_MOSFET}"
 
 
 def _resists(device: Component) -> bool:

@@ -6,8 +6,8 @@ from the flange   5V ──┬──►|── VIN   controller's board ──|�
                       GND
 ```
 
-The board joins USB to the same pin. Without the diode USB goes on over the flange's coil and the
-regulator's switch to the robot's supply, and over the wires to whatever is on it.
+The controller's board joins USB to the same pin. Without the diode USB goes on over the flange's
+coil and the regulator's switch to its supply, and to the robot's where the MOSFET conducts.
 """
 
 from collections.abc import Iterator, Sequence
