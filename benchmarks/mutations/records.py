@@ -165,7 +165,7 @@ KICAD_PROJECT: Mutators = {kind: JSON[kind] for kind in JSON if kind != "swap it
 
 _TOML_COMMENT = re.compile(r"#.*")
 _TOML_TEXT = re.compile(r'= "([^"\n]+)"')
-_TOML_LINE = re.compile(r"^\w+ = .*\n", re.MULTILINE)
+_TOML_LINE = re.compile(r"^\w+ = .*[^[\n]\n", re.MULTILINE)  # none that a list begins on
 TOML: Mutators = {
     "number": number_changed(least=0.0, skip=_TOML_COMMENT),
     "word": word_changed(_TOML_TEXT, skip=_TOML_COMMENT),

@@ -74,7 +74,7 @@ LAYERS = (
     "Edge_Cuts",
 )
 
-pytestmark = [needs("kicad-cli"), pytest.mark.slow]
+pytestmark = [needs("kicad-cli"), pytest.mark.slow, pytest.mark.in_turn]
 
 
 @pytest.mark.parametrize(("preset", "name"), EVERY)
