@@ -38,7 +38,17 @@ def _starved(fill: shapely.Geometry, loose: Sequence[Copper] = (VIA,)) -> float:
     )
     pour = Copper("fill", "GND", FRONT, fill)
     board = KicadBoard(
-        (part,), (pour, *loose), ("F.Cu", "B.Cu"), (), Silk((), (), {}), (), (), {}, math.nan
+        parts=(part,),
+        loose=(pour, *loose),
+        layers=("F.Cu", "B.Cu"),
+        edges=(),
+        silk=Silk((), (), {}),
+        keep_outs=(),
+        plies=(),
+        regions={},
+        thickness_mm=math.nan,
+        openings=(),
+        title_block={},
     )
     read = ReadBoard("board", "board", board, None, None)  # type: ignore[arg-type]
     (measured,) = measure_spokes(read)
