@@ -56,6 +56,7 @@ lint: $(DEV) ## format, lint, types, licences, schema
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+	$(BIN)/mypy --config-file tests/mypy.ini
 	REUSE_ENCODING_MODULE=charset_normalizer $(BIN)/reuse lint --lines
 	@$(BIN)/lumitip-fab schema | diff -u design/schema.json - || \
 	  { echo "design/schema.json is stale: make schema"; exit 1; }

@@ -21,11 +21,11 @@ def kinds(verdict: Verdict) -> list[str]:
 
 def damaged(frames: Frames, damage: Callable[[np.ndarray], None]) -> Frames:
     """Frames after a damage of each array in place."""
-    parts = [frames.empty.copy(), frames.sheet.copy(), frames.moving.copy()]
+    empty, sheet, moving = frames.empty.copy(), frames.sheet.copy(), frames.moving.copy()
     gauge = tuple(part.copy() for part in frames.gauge)
-    for part in (*parts, *gauge):
+    for part in (empty, sheet, moving, *gauge):
         damage(part)
-    return Frames(*parts, gauge)
+    return Frames(empty, sheet, moving, gauge)
 
 
 def test_good_fingers_are_accepted(bench: Bench, judge: Judge) -> None:
