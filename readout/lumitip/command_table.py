@@ -19,6 +19,14 @@ def positive_seconds(text: str) -> float:
     return value
 
 
+def duration(text: str) -> float:
+    """A time above 0 that ends (s), for `type=` of an argument."""
+    value = positive_seconds(text)
+    if value == math.inf:
+        raise argparse.ArgumentTypeError(f"the value is {text}; a time that ends (s) is needed")
+    return value
+
+
 def positive_count(text: str) -> int:
     """A whole number from 1 on, for `type=` of an argument."""
     try:
@@ -32,6 +40,7 @@ def positive_count(text: str) -> int:
 
 _TYPES: dict[str, Callable[[str], Any]] = {
     "count": positive_count,
+    "duration": duration,
     "number": float,
     "path": Path,
     "seconds": positive_seconds,

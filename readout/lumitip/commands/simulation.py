@@ -13,8 +13,9 @@ def twin(options: argparse.Namespace) -> int:
     from lumitip.layout import Layout
     from lumitip.links import open_link
     from lumitip.links.serve import SerialDevice
+    from lumitip.links.url import Url
 
-    if not options.url.startswith("twin://"):
+    if Url.parse(options.url).scheme != "twin":
         raise UrlError(f"the address is {options.url!r}; one like twin://demo is needed")
     path = layout_path(options, options.url)
     link = open_link(options.url, Layout.load(path) if path else None)

@@ -1,6 +1,7 @@
 """`lumitip view`: fingertips in a browser."""
 
 import argparse
+import os
 from pathlib import Path
 
 from lumitip.commands.common import layout_path
@@ -22,6 +23,7 @@ def run(options: argparse.Namespace) -> int:
     from lumitip.view.registry import FingerRegistry
     from lumitip.view.rerun_sink import RerunSink
 
+    _require_room(options.folder)
     with ExitStack() as stack:
         sinks: tuple[RerunSink, ...] = ()
         if options.rerun is not None:
@@ -49,3 +51,14 @@ def run(options: argparse.Namespace) -> int:
             webbrowser.open(server.url)
         server.run()
     return 0
+
+
+def _require_room(folder: Path) -> None:
+    """Refuse a folder in which no recording could be written: it is made with the first one."""
+    from lumitip.errors import ViewError
+
+    there = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+    if not there.is_dir():
+        raise ViewError(f"--folder {folder}: {there} is no folder. Choose another one")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise ViewError(f"--folder {folder}: {there} cannot be written. Choose another one")

@@ -166,7 +166,7 @@ def test_a_missing_library_is_told_by_its_extra(
     assert caught.value.extra == extra
 
 
-@pytest.mark.parametrize("seconds", ["0", "-1", "nan"])
+@pytest.mark.parametrize("seconds", ["0", "-1", "nan", "inf"])
 def test_doctor_needs_time(capsys: pytest.CaptureFixture[str], seconds: str) -> None:
     with pytest.raises(SystemExit) as ended:
         main(["doctor", "twin://demo", "--seconds", seconds])

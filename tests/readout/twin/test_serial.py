@@ -71,7 +71,7 @@ def test_a_path_that_is_taken_and_other_links_are_refused(
     assert "like twin://demo is needed" in capsys.readouterr().err
     link = tmp_path / "tty"
     assert (
-        main(["twin", "twin://edge", "--serve-serial", "--link", str(link), "--seconds", "0.05"])
+        main(["twin", "Twin://edge", "--serve-serial", "--link", str(link), "--seconds", "0.05"])
         == 0
     )
     assert not link.is_symlink()

@@ -151,3 +151,14 @@ def test_a_file_for_rerun_is_never_overwritten(
     assert main(["view", "twin://demo", "--rerun", str(file)]) == 2
     assert "the file exists. Choose another name" in capsys.readouterr().err
     assert file.read_text(encoding="utf-8") == "mine"
+
+
+def test_a_folder_in_which_nothing_can_be_recorded_is_refused_at_the_start(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "notes").write_text("a file")
+    for folder in (tmp_path / "notes", tmp_path / "notes" / "deeper"):
+        assert main(["view", "twin://demo", "--folder", str(folder)]) == 2
+        printed = capsys.readouterr()
+        assert f"--folder {folder}: {tmp_path / 'notes'} is no folder" in printed.err
+        assert printed.out == ""
