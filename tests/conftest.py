@@ -12,7 +12,7 @@ import pytest
 from lumitip_fab.checks.run import modules_reading, run_checks
 from lumitip_fab.cli.build import build
 from panelled_boards import write_panelled
-from turns import VARIABLE, turn, waiting
+from turns import VARIABLE, waiting
 
 TESTS = Path(__file__).parent
 DESIGN = TESTS.parent / "design"
@@ -157,13 +157,12 @@ def _whole(config: pytest.Config) -> bool:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Without that, they are left out; so are cases that wait for their turn. The longest files
-    come first."""
+    """Without that, they are left out, and with it those that wait for their turn. The longest
+    files come first."""
     rank = {TESTS / file: place for place, file in enumerate(LONGEST)}
     items.sort(key=lambda item: rank.get(item.path, len(rank)))
-    out = waiting(items)
-    if not _whole(config):
-        out |= set(_left_out(items))
+    slow = set(_left_out(items))
+    out = waiting(slow) if _whole(config) else slow
     config.hook.pytest_deselected(items=[item for item in items if item in out])
     items[:] = [item for item in items if item not in out]
 
@@ -188,11 +187,10 @@ def pytest_terminal_summary(
             "Left out: slow tests (other presets, damaged files, KiCad, browser, robot arm); "
             "`LUMITIP_REQUIRE=all make test` runs everything, and fails where a tool is absent."
         )
-    part, parts = turn()
-    if parts > 1:
+    elif os.environ.get(VARIABLE):
         terminalreporter.write_line(
-            f"In turn: of the designs that are built whole, part {part} of {parts} "
-            f"({VARIABLE}={part}/{parts}); without {VARIABLE} all of them are tested."
+            f"Left out: slow tests but those of {VARIABLE}={os.environ[VARIABLE]}; without that "
+            "variable all of them run."
         )
 
 

@@ -1,4 +1,4 @@
-"""A landing tests a part of the designs that are built whole; the parts together are all."""
+"""A landing runs a part of the slow tests; the parts together are all of them."""
 
 import os
 import subprocess
@@ -14,22 +14,22 @@ LEFT_OUT = """\
 from turns import waiting
 
 def pytest_collection_modifyitems(items):
-    out = waiting(items)
+    out = waiting([item for item in items if item.get_closest_marker("slow")])
     items[:] = [item for item in items if item not in out]
 """
 DESIGNS = """\
 import pytest
 
-@pytest.mark.in_turn
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", ["fingertip", "flex", "dense", "mux16", "wsg50"])
 @pytest.mark.parametrize("board", [1, 2])
 def test_board(preset, board): pass
 
-@pytest.mark.in_turn
+@pytest.mark.slow
 @pytest.mark.parametrize("columns", [3, 8])
 def test_patch(columns): pass
 
-@pytest.mark.in_turn
+@pytest.mark.slow
 def test_random(): pass
 
 def test_quick(): pass
@@ -41,7 +41,7 @@ PARTS = 3
 def folder(tmp_path: Path) -> Path:
     (tmp_path / "conftest.py").write_text(LEFT_OUT)
     (tmp_path / "test_designs.py").write_text(DESIGNS)
-    (tmp_path / "pytest.ini").write_text("[pytest]\nmarkers = in_turn\n")
+    (tmp_path / "pytest.ini").write_text("[pytest]\nmarkers = slow\n")
     return tmp_path
 
 
@@ -57,7 +57,7 @@ def collected(folder: Path, part: int, parts: int) -> set[str]:
     return {line.partition("::")[2] for line in done.stdout.splitlines() if "::" in line}
 
 
-def test_every_design_has_its_turn_once(folder: Path) -> None:
+def test_every_slow_test_has_its_turn_once(folder: Path) -> None:
     every = collected(folder, 0, 1)
     parts = [collected(folder, part, PARTS) for part in range(PARTS)]
     always = {"test_quick", "test_board[1-fingertip]", "test_board[2-fingertip]"}

@@ -1,8 +1,8 @@
-"""Designs that are built whole take minutes each: a landing tests a part of them, in turn."""
+"""Slow tests take an hour and more together: a landing runs a part of them, in turn."""
 
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Collection
 
 import pytest
 
@@ -12,7 +12,7 @@ ALWAYS = frozenset({"fingertip", "small"})
 
 
 def turn() -> tuple[int, int]:
-    """Which part of how many is tested, from 0; `(0, 1)` is everything.
+    """Which part of how many is run, from 0; `(0, 1)` is everything.
 
     Raises:
         UsageError: if the variable holds something else.
@@ -26,15 +26,16 @@ def turn() -> tuple[int, int]:
     return int(found[1]), int(found[2])
 
 
-def waiting(items: Sequence[pytest.Item]) -> set[pytest.Item]:
-    """Cases that have their turn another time. Tests of a preset have it together: they share the
-    built files."""
+def waiting(slow: Collection[pytest.Item]) -> set[pytest.Item]:
+    """Those that have their turn another time: each part has tests of nearly every file. What is
+    tried on a preset has its turn together, because it shares the built files."""
     part, parts = turn()
-    keys = {item: _key(item) for item in items if item.get_closest_marker("in_turn")}
+    keys = {item: _key(item) for item in slow}
     ranks = {key: rank for rank, key in enumerate(sorted({*keys.values()} - ALWAYS))}
     return {item for item, key in keys.items() if ranks.get(key, part) % parts != part}
 
 
 def _key(item: pytest.Item) -> str:
     spec = getattr(item, "callspec", None)
-    return str(spec.params.get("preset", item.nodeid)) if spec else item.nodeid
+    preset = spec.params.get("preset") if spec else None
+    return preset if isinstance(preset, str) else item.nodeid

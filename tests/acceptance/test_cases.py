@@ -44,14 +44,12 @@ def _passes(case: Path, steps: Collection[str] = (), checks: Collection[str] = (
     assert trial.failed == ()
 
 
-@pytest.mark.in_turn
 @pytest.mark.slow
 @pytest.mark.parametrize("case", BUILT_CASES, ids=lambda case: case.stem)
 def test_a_design_that_failed_a_check_passes_every_check(case: Path) -> None:
     _passes(case)
 
 
-@pytest.mark.in_turn
 @pytest.mark.slow
 @pytest.mark.parametrize("case", BOARD_CASES, ids=lambda case: case.stem)
 def test_boards_that_failed_a_check_pass_every_check_of_boards(case: Path) -> None:
@@ -62,7 +60,6 @@ def cells(drawn: Design) -> int:
     return sum(drawn.edits.get("grid.columns", preset(drawn.base)["grid.columns"]))
 
 
-@pytest.mark.in_turn
 @pytest.mark.slow
 @pytest.mark.parametrize("number", range(BUILT))
 def test_a_random_design_is_built_and_passes_every_check(number: int) -> None:

@@ -74,7 +74,7 @@ LAYERS = (
     "Edge_Cuts",
 )
 
-pytestmark = [needs("kicad-cli"), pytest.mark.slow, pytest.mark.in_turn]
+pytestmark = [needs("kicad-cli"), pytest.mark.slow]
 
 
 @pytest.mark.parametrize(("preset", "name"), EVERY)

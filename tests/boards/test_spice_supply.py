@@ -26,7 +26,6 @@ def _netlist(design: Design) -> str:
 
 
 @needs_ngspice
-@pytest.mark.in_turn
 @pytest.mark.slow
 @pytest.mark.parametrize("preset", ["published", "asymmetric"])
 def test_ripple_and_start_up_are_as_computed(design_dir: Path, preset: str, tmp_path: Path) -> None:

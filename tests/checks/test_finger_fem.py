@@ -18,7 +18,7 @@ from lumitip_fab.design.strength import Loaded
 from lumitip_fab.design.torsion import torsion
 from printed_fingers import written
 
-pytestmark = [pytest.mark.slow, pytest.mark.in_turn]
+pytestmark = pytest.mark.slow
 BRICK_MM = (1.2, 0.8, 0.3)
 COMPLIANT_BRICK_MM = (1.5, 0.8, 0.4)
 BESIDE_MM = 1.0  # the interface's end, before its corner gathers the stress

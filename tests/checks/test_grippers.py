@@ -87,7 +87,6 @@ def failed(file: Path, outputs: Path, out: Path) -> list[str]:
     return [f"{m.check} {m.subject}: {m.measured} {m.limit}" for m in run_checks(out).failed]
 
 
-@pytest.mark.in_turn
 @pytest.mark.parametrize("gripper", WITHOUT_PRESET)
 def test_a_gripper_of_the_catalogue(
     gripper: str, held_by: File, outputs: Path, tmp_path: Path
@@ -95,7 +94,6 @@ def test_a_gripper_of_the_catalogue(
     assert failed(held_by(gripper), outputs, tmp_path / "out") == []
 
 
-@pytest.mark.in_turn
 def test_a_new_gripper_needs_nothing_but_its_entry(
     held_by: File, outputs: Path, tmp_path: Path
 ) -> None:
@@ -109,7 +107,6 @@ def test_every_gripper_of_the_catalogue_holds_the_published_sensor(design_dir: P
     assert set(config.catalogue.grippers) <= tested
 
 
-@pytest.mark.in_turn
 @pytest.mark.parametrize("fit_mm", [-0.1, 0.1])
 def test_the_fit_of_the_printer_passes_every_check(
     fit_mm: float, held_by: File, outputs: Path, tmp_path: Path

@@ -22,7 +22,6 @@ current_ma = 6.0
 """
 
 
-@pytest.mark.in_turn
 @pytest.mark.slow
 @pytest.mark.parametrize("columns", [[3], [1] * 8, [5, 2, 5]], ids=str)
 def test_a_patch_passes_every_check(columns: list[int], design_dir: Path, tmp_path: Path) -> None:

@@ -14,7 +14,6 @@ PRESETS = Path(__file__).parents[2] / "design" / "presets"
 NAMES = sorted(file.stem for file in PRESETS.glob("*.toml"))
 
 
-@pytest.mark.in_turn
 @pytest.mark.slow  # `make outputs` checks the design that it has built
 @pytest.mark.parametrize("preset", NAMES)
 def test_a_preset_passes_every_check(built: Callable[[str], Path], preset: str) -> None:

@@ -77,7 +77,6 @@ def _edited(file: Path, changes: Changes) -> Path:
     return file
 
 
-@pytest.mark.in_turn
 @pytest.mark.slow
 @pytest.mark.parametrize("changes", [THICK, WIDE, UPRIGHT], ids=["thick", "wide", "upright"])
 def test_an_unusual_design_passes_every_check(

@@ -71,7 +71,6 @@ def assert_times_are_billed(outputs: Path, parts: dict[str, dict[str, float]]) -
 FLEX = {"backing/emitter_backing.3mf": 10, "interface/emitter_interface.3mf": 130}
 
 
-@pytest.mark.in_turn
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("preset", "layers", "filament"),
