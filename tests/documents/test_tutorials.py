@@ -79,7 +79,7 @@ def test_the_commands_print_what_the_page_shows(tutorial: Path, user: Path) -> N
 
 
 def test_each_tutorial_says_what_it_needs_and_has_commands() -> None:
-    assert len(TUTORIALS) == 6
+    assert len(TUTORIALS) == 8
     for tutorial in TUTORIALS:
         text = tutorial.read_text("utf-8")
         assert "**You need:**" in text
