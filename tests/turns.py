@@ -3,6 +3,7 @@
 import os
 import re
 from collections.abc import Collection
+from zlib import crc32
 
 import pytest
 
@@ -27,15 +28,17 @@ def turn() -> tuple[int, int]:
 
 
 def waiting(slow: Collection[pytest.Item]) -> set[pytest.Item]:
-    """Those that have their turn another time: each part has tests of nearly every file. What is
-    tried on a preset has its turn together, because it shares the built files."""
+    """Those that have their turn another time. Tests of a preset have theirs together, because they
+    share the built files; a new test moves no other one."""
     part, parts = turn()
-    keys = {item: _key(item) for item in slow}
-    ranks = {key: rank for rank, key in enumerate(sorted({*keys.values()} - ALWAYS))}
-    return {item for item, key in keys.items() if ranks.get(key, part) % parts != part}
+    presets = {item: preset for item in slow if (preset := _preset(item))}
+    ranks = {preset: rank for rank, preset in enumerate(sorted({*presets.values()} - ALWAYS))}
+    place = {item: ranks.get(preset, part) for item, preset in presets.items()}
+    place |= {item: crc32(item.nodeid.encode()) for item in slow if item not in presets}
+    return {item for item in slow if place[item] % parts != part}
 
 
-def _key(item: pytest.Item) -> str:
+def _preset(item: pytest.Item) -> str:
     spec = getattr(item, "callspec", None)
     preset = spec.params.get("preset") if spec else None
-    return preset if isinstance(preset, str) else item.nodeid
+    return preset if isinstance(preset, str) else ""

@@ -20,10 +20,10 @@ def positive_seconds(text: str) -> float:
 
 
 def duration(text: str) -> float:
-    """A time above 0 that ends (s), for `type=` of an argument."""
+    """A finite time above 0 (s), for `type=` of an argument."""
     value = positive_seconds(text)
     if value == math.inf:
-        raise argparse.ArgumentTypeError(f"the value is {text}; a time that ends (s) is needed")
+        raise argparse.ArgumentTypeError(f"the value is {text}; a finite time (s) is needed")
     return value
 
 

@@ -117,7 +117,7 @@ def test_a_diode_that_leaves_too_little_is_refused(design_dir: Path, tmp_path: P
 
 def test_by_itself_there_is_no_diode_on_the_leds_supply(design_dir: Path, tmp_path: Path) -> None:
     design = _low(design_dir, tmp_path, "auto")
-    assert design.electrical.feed and design.electrical.feed.diode is None
+    assert design.feed and design.feed.diode is None
     assert "Never switch this supply on while USB is plugged in" in wiring_note(design)
 
 
@@ -144,7 +144,7 @@ def _with_controller(design_dir: Path, folder: Path, old: str, new: str) -> Desi
 
 
 def test_a_controller_whose_current_is_not_known(design_dir: Path, tmp_path: Path) -> None:
-    feed = _with_controller(design_dir, tmp_path, "draws_ma = 50.0\n", "").electrical.feed
+    feed = _with_controller(design_dir, tmp_path, "draws_ma = 50.0\n", "").feed
     assert feed and feed.diode == "1N5819HW" and feed.drop_v == pytest.approx(0.32)
 
 

@@ -106,6 +106,7 @@ def test_the_file_to_edit_is_the_published_sensor_with_pull_ups_and_current_sour
         ("breakout", "indicator"): ("KT-0805YG", "none"),
         ("wiring", "order"): ("apart", "published"),
         ("protection", "diode"): ("H5VUD5U", "none"),
+        ("breakout", "feed_diode"): ("1N5819HW", "none"),
         ("breakout", "board_mm"): ((45.72, 38.1), (45.72, 33.02)),
     }
     for (section, field), values in differing.items():

@@ -216,7 +216,12 @@ def test_firmware_and_program_are_named_with_their_place(preset: str, written: W
             ],
             [],
         ),
-        ("wsg50", {}, ["ESD diodes Z1 to Z10", "fuse F1", "ends at the MOSFET Q1"], ["flange"]),
+        (
+            "wsg50",
+            {},
+            ["ESD diodes Z1 to Z10", "fuse F1", "The MOSFET Q1 blocks a reversed supply"],
+            ["flange"],
+        ),
         ("published", {}, ["TVS diode D1"], ["ESD", "diode test"]),
         ("published", {"flange.enabled": False}, [], ["ESD", "TVS", "fuse", "diode test"]),
     ],

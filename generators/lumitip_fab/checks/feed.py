@@ -19,7 +19,7 @@ _CONDUCT = ("resistor", "inductor", "fuse", "schottky diode")
 def measure_feed(read: ReadBoard) -> Iterator[Measurement]:
     """The diode's ends, other ways from pin to wire, and what is left for the controller; of a
     board without the diode the wire is joined to the pin."""
-    feed = read.design.electrical.feed
+    feed = read.design.feed
     if feed is None or feed.board != read.name:
         return
     ends = [at_contact(read, cable, feed.wire) for cable in _CABLES]

@@ -9,6 +9,7 @@ from lumitip.layout import Layout, Optics
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import boards
 from lumitip_fab.derive.boards.breakout import derive_breakout
+from lumitip_fab.derive.boards.feed import derive_feed
 from lumitip_fab.derive.boards.flange import derive_flange
 from lumitip_fab.derive.boards.packages import derive_fabs, derive_packages, derive_rules
 from lumitip_fab.derive.diagnostics import Diagnostics
@@ -119,6 +120,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     panels = derive_panels(config, plan.board.box, (*breakout, *flange), faults)
     circuit = wiring.build_wiring(config, strings, muxing)
     figures = derive_electrical(config, strings, muxing, circuit.pull_ups, faults)
+    feed = derive_feed(config, faults)
     joints = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
     cabling = derive_cabling(config, joints, silhouette, coupling, circuit, figures, faults)
     faults.stop()
@@ -178,6 +180,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
             packages=derive_packages(config),
             rules=rules,
             electrical=figures,
+            feed=feed,
             mask=replace(sheet, shift=known_mask_shift(config, layout)),
             mould=casting,
             clamps=clamps,

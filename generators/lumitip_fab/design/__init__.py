@@ -37,6 +37,7 @@ from lumitip_fab.design.boards import (
 from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 from lumitip_fab.design.clamp import Clamp
 from lumitip_fab.design.electrical import Electrical
+from lumitip_fab.design.feed import Feed
 from lumitip_fab.design.fit_plate import FitPlate, Fits, PocketCorner
 from lumitip_fab.design.gauge_card import GaugeCard, Target
 from lumitip_fab.design.holder import Holder
@@ -135,6 +136,8 @@ class Design:
     packages: Packages
     rules: Rules
     electrical: Electrical
+    feed: Feed | None
+    """Of the controller; none where no wire of a board feeds it."""
     mask: Mask
     mould: Mould
     clamps: tuple[Clamp, ...]

@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-from lumitip_fab.design.feed import Feed
-
 
 @dataclass(frozen=True)
 class Regulation:
@@ -286,8 +284,6 @@ class Electrical:
     """The board that the supply enters; none where that does not protect its input."""
     indicators: tuple[Indicator, ...] = ()
     """The power LEDs, at most one for each board."""
-    feed: Feed | None = None
-    """None where no wire of a board feeds the controller."""
     bulk: Bulk | None = None
     """The receiver's bulk capacitor; none without it."""
     protection: Protection | None = None

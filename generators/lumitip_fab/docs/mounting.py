@@ -57,7 +57,7 @@ def _work(design: Design) -> Iterator[str]:
     own = [wire.number for wire in ends if wire.signal == "5V" and led_net != "5V"]
     if ends:
         listed_ends = ", ".join(f"{wire.number} to {wire.signal}" for wire in ends)
-        feed = design.electrical.feed
+        feed = design.feed
         name = "supplied_free" if feed and feed.diode else "supplied_joined"
         free = "".join(_text(name, wire=number) for number in own)
         yield _text("supplied", ends=listed_ends, free=free)

@@ -50,7 +50,7 @@ def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
 
 def _fed(board: AuxiliaryBoard, design: Design, diodes: Sequence[Component]) -> Iterator[str]:
     """The diode before the controller, and the names of the pads at its ends."""
-    feed = design.electrical.feed
+    feed = design.feed
     for part in diodes:
         assert feed is not None
         (_, behind), (_, before) = part.nets

@@ -41,7 +41,7 @@ def outside(design: Design) -> Iterator[Row]:
         least_a = supply.ripple_a / 2
         yield from rows_of("regulated", supply=supply, least_a=least_a, charging_ma=charging_ma)
     yield from input_rows(design)
-    if feed := design.electrical.feed:
+    if feed := design.feed:
         left_v = feed.wire_v - feed.drop_v
         yield from rows_of("feed" if feed.diode else "joined_feed", feed=feed, left_v=left_v)
     for lit in design.electrical.indicators:

@@ -124,7 +124,7 @@ def listed(names: list[str]) -> str:
 
 def _power(design: Design) -> str:
     """How the controller comes by its supply, and what switches the LEDs."""
-    cabling, feed = design.cabling, design.electrical.feed
+    cabling, feed = design.cabling, design.feed
     wires = (wire for cable in cabling.cables for wire in cable.wires)
     switching = [wire for wire in wires if wire.signal == "LED"]
     said = _seated(cabling) + _fed_by(cabling, joined=not (feed and feed.diode))

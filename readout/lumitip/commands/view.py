@@ -23,14 +23,15 @@ def run(options: argparse.Namespace) -> int:
     from lumitip.view.registry import FingerRegistry
     from lumitip.view.rerun_sink import RerunSink
 
-    _require_room(options.folder)
+    if options.folder:
+        _require_writable(options.folder)
     with ExitStack() as stack:
         sinks: tuple[RerunSink, ...] = ()
         if options.rerun is not None:
             sinks = (RerunSink(Path(options.rerun) if options.rerun else None),)
             stack.callback(sinks[0].close)
         expected = Expected.of("", options.gap, options.diameter)
-        registry = FingerRegistry((), options.folder, expected)
+        registry = FingerRegistry((), options.folder or Path("recordings"), expected)
         stack.callback(registry.close)
         for url in options.urls:
             layout = layout_path(options, url)
@@ -53,12 +54,18 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _require_room(folder: Path) -> None:
+def _require_writable(folder: Path) -> None:
     """Refuse a folder in which no recording could be written: it is made with the first one."""
     from lumitip.errors import ViewError
 
-    there = next(path for path in (folder, *folder.absolute().parents) if path.exists())
-    if not there.is_dir():
-        raise ViewError(f"--folder {folder}: {there} is no folder. Choose another one")
-    if not os.access(there, os.W_OK | os.X_OK):
+    there = folder.absolute()
+    try:
+        while not there.exists():
+            there = there.parent
+        if not there.is_dir():
+            raise ViewError(f"--folder {folder}: {there} is not a folder. Choose another one")
+        writable = os.access(there, os.W_OK | os.X_OK)
+    except OSError:
+        writable = False
+    if not writable:
         raise ViewError(f"--folder {folder}: {there} cannot be written. Choose another one")

@@ -160,5 +160,5 @@ def test_a_folder_in_which_nothing_can_be_recorded_is_refused_at_the_start(
     for folder in (tmp_path / "notes", tmp_path / "notes" / "deeper"):
         assert main(["view", "twin://demo", "--folder", str(folder)]) == 2
         printed = capsys.readouterr()
-        assert f"--folder {folder}: {tmp_path / 'notes'} is no folder" in printed.err
+        assert f"--folder {folder}: {tmp_path / 'notes'} is not a folder" in printed.err
         assert printed.out == ""

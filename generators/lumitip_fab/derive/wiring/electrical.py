@@ -4,7 +4,6 @@ import math
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.bulk import derive_bulk
-from lumitip_fab.derive.boards.feed import derive_feed
 from lumitip_fab.derive.boards.flange_circuit import derive_regulated
 from lumitip_fab.derive.boards.indicator import derive_indicators
 from lumitip_fab.derive.boards.plug_in import derive_plug_in
@@ -35,7 +34,6 @@ def derive_electrical(
         supplies=derive_regulated(config, faults),
         plug_ins=derive_plug_in(config, faults),
         indicators=derive_indicators(config, muxing, faults),
-        feed=derive_feed(config, faults),
         bulk=derive_bulk(config, pull_ups),
         protection=protection,
         ambient=derive_ambient(config, channel, faults),

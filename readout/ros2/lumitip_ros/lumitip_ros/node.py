@@ -65,7 +65,7 @@ class FingertipNode(LifecycleNode):
         self._values = self.create_lifecycle_publisher(Values, "~/values", sensor)
         self._contact = self.create_lifecycle_publisher(Contact, "~/contact", sensor)
         self._estimate = self.create_lifecycle_publisher(Estimate, "~/estimate", sensor)
-        self._markers = self.create_lifecycle_publisher(MarkerArray, "~/markers", sensor)
+        self._markers = self.create_lifecycle_publisher(MarkerArray, "~/markers", 10)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._transforms = TransformBroadcaster(self)
         # Taring is in the group of the transitions: none of them closes the link meanwhile.
