@@ -156,6 +156,6 @@ def test_estimates_come_at_the_rate_of_the_display(
     points = f"{PANEL}.estimates.points"
     wait_for(lambda: page.evaluate(f"{points}.length") > 100)
     times = np.array(page.evaluate(f"{points}.map((p) => p.t)"))
-    assert np.median(np.diff(times)) < 0.1
+    assert np.median(np.diff(times)) < 0.5  # 0.03 where nothing else is at work
     assert len(times) / np.ptp(times) < 35.0
     assert server.registry.fingers[1].tip.stats.overflowed == 0
