@@ -1,4 +1,4 @@
-"""A landing runs a part of the slow tests; the parts together are all of them."""
+"""Each part of the slow tests is another one; the parts together are all of them."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""Slow tests take an hour and more together: a landing runs a part of them, in turn."""
+"""Slow tests take an hour and more together: `.ci/run` runs a part of them."""
 
 import os
 import re

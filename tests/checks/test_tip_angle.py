@@ -45,7 +45,8 @@ def made(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Made:
     def make(
         preset: str, angle_deg: float, more: str = "", makers: Sequence[Any] = MAKERS
     ) -> tuple[Path, Design]:
-        out = folder / f"{preset}_{angle_deg}_{more}_{len(makers)}"
+        names = "_".join(maker.__name__ for maker in makers)
+        out = folder / f"{preset}_{angle_deg}_{more}_{names}"
         if out.is_dir():
             return out, read_design(out / "design.json")
         file = folder / "design" / "mine.toml"

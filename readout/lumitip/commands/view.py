@@ -23,7 +23,7 @@ def run(options: argparse.Namespace) -> int:
     from lumitip.view.registry import FingerRegistry
     from lumitip.view.rerun_sink import RerunSink
 
-    if options.folder:
+    if options.folder:  # the default may stay unused
         _require_writable(options.folder)
     with ExitStack() as stack:
         sinks: tuple[RerunSink, ...] = ()
