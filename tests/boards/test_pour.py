@@ -1,4 +1,4 @@
-"""The ground pour reaches every ground pad, keeps clear of the rest, and replaces ground tracks."""
+"""The ground pour reaches every ground pad, keeps clear of the rest, and leaves all tracks."""
 
 import dataclasses
 import math
@@ -24,7 +24,7 @@ from lumitip_fab.boards.placed import BYPASS_MM, bypass_pads, placed_pads
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.pour.flood import spread
 from lumitip_fab.boards.route import route
-from lumitip_fab.boards.verify import summary, verify
+from lumitip_fab.boards.verify import require_clean_drc, summary, verify
 from lumitip_fab.errors import BuildError
 
 Poured = tuple[Placement, Routing, tuple[Fill, ...], frozenset[tuple[str, str]]]
@@ -90,15 +90,10 @@ def test_the_same_board_gets_the_same_pour(
     assert [f.area.wkb for f in fills] == [f.area.wkb for f in poured[2]]
 
 
-def test_the_pour_replaces_ground_tracks(routed: tuple[Placement, Routing], poured: Poured) -> None:
-    def length(routing: Routing) -> float:
-        return sum(
-            shapely.LineString([t.start, t.end]).length for t in routing.tracks if t.net == "GND"
-        )
-
-    assert length(poured[1]) < 0.3 * length(routed[1])
-    others = [[t for t in r.tracks if t.net != "GND"] for r in (routed[1], poured[1])]
-    assert others[0] == others[1]
+def test_the_pour_leaves_all_tracks(routed: tuple[Placement, Routing], poured: Poured) -> None:
+    """Those of ground, too: they are the short ways where the pour goes round."""
+    assert poured[1].tracks == routed[1].tracks
+    assert poured[1].vias[: len(routed[1].vias)] == routed[1].vias
 
 
 def test_ground_pads_are_bridged_by_spokes(poured: Poured) -> None:
@@ -157,8 +152,9 @@ def test_a_board_that_is_not_routed_is_refused() -> None:
         ),
     )
     tracks = tuple(Track("A", s, (-0.8, -4.9), (-0.8, 4.9), 2.0) for s in SIDES)
-    with pytest.raises(BuildError, match=r"R2\.2 .* is not joined to net GND"):
-        pour(wall, Routing(tracks, (), 1))
+    poured = pour(wall, Routing(tracks, (), 1))
+    with pytest.raises(BuildError, match=r"net GND is in pieces: nothing reaches the part at \(5\.20"):
+        require_clean_drc(BoardModel(wall, *poured))
 
 
 def test_places_are_spread_in_their_order() -> None:

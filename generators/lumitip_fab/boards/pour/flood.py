@@ -11,7 +11,6 @@ from shapely import Geometry
 
 from lumitip_fab.boards.model import SIDES, Fill, NetClass, Placement, Routing, Track, Via
 from lumitip_fab.boards.placed import BYPASS_MM, PlacedPad, bypass_pads, placed_pads
-from lumitip_fab.boards.pour.ground import Kept, needed
 from lumitip_fab.boards.pour.room import MARGIN_MM, Sheet, room, sheet, via_room
 from lumitip_fab.boards.route.kernels import kernel
 from lumitip_fab.boards.verify import DRILL_WALL_MM
@@ -111,9 +110,11 @@ def pour(
         routing: tracks and vias that connect every net, ground too.
 
     Returns:
-        The routing with only those tracks and vias of ground that the pour does not replace, and
-        with stitching vias; the pour, without pieces that nothing joins to ground; and the pads
-        that it joins all round. Areas are polygons on whole micrometres.
+        The routing with stitching vias; the pour, without pieces that nothing joins to ground; and
+        the pads that it joins all round. Areas are polygons on whole micrometres.
+
+    The tracks of ground stay, though the pour joins their ends, too: it may do so round the whole
+    board, and a multiplexer's capacitor is there for the short way.
     """
     pads = [
         pad
@@ -125,8 +126,7 @@ def pour(
         return routing, (), frozenset()
     bypasses = bypass_pads(placement)
     rooms = {side: room(placement, routing, side) for side in SIDES}
-    others, own = _split(placement, routing)
-    beside = [v for v in own.vias if any(_away_mm(p, [v])[0] <= BYPASS_MM for p in bypasses)]
+    own = _of_ground(placement, routing)
     kind = _kind(placement)
     free = via_room(placement, routing, kind.via_mm, kind.via_drill_mm)
     filled = _Sheets(pads)
@@ -134,11 +134,9 @@ def pour(
         filled.fill(rooms)
         sheets = filled.of
         whole = [shapely.union_all(sheets[side].pieces) for side in SIDES]
-        possible = [*beside, *candidates(placement, free, *whole)]
-        kept = needed(pads, sheets, own, possible)
-        pieces, stitches = _stitched(sheets, kept, possible, bypasses)
-        vias = (*kept.vias, *stitches)
-        islands = _islands(sheets, pieces, kept.tracks, vias)
+        possible = candidates(placement, free, *whole)
+        pieces, stitches = _stitched(sheets, own, possible, bypasses)
+        islands = _islands(sheets, pieces, own.tracks, (*own.vias, *stitches))
         if not any(islands.values()):
             break
         for side, found in islands.items():
@@ -146,7 +144,7 @@ def pour(
                 rooms[side] = shapely.difference(
                     rooms[side], shapely.union_all(found).buffer(_APART_MM)
                 )
-    done = Routing((*others.tracks, *kept.tracks), (*others.vias, *vias), routing.iterations)
+    done = dataclasses.replace(routing, vias=(*routing.vias, *stitches))
     fills = tuple(
         Fill(placement.ground, side, shapely.set_precision(sheets[side].pieces[i], 0.001))
         for side in SIDES
@@ -228,17 +226,13 @@ def _islands(
     return found
 
 
-def _split(placement: Placement, routing: Routing) -> tuple[Routing, Routing]:
-    """Copper of all other nets, and copper of ground."""
-    others, own = (
-        dataclasses.replace(
-            routing,
-            tracks=tuple(t for t in routing.tracks if (t.net == placement.ground) is ground),
-            vias=tuple(v for v in routing.vias if (v.net == placement.ground) is ground),
-        )
-        for ground in (False, True)
+def _of_ground(placement: Placement, routing: Routing) -> Routing:
+    """Tracks and vias of ground."""
+    return dataclasses.replace(
+        routing,
+        tracks=tuple(t for t in routing.tracks if t.net == placement.ground),
+        vias=tuple(v for v in routing.vias if v.net == placement.ground),
     )
-    return others, own
 
 
 def _beside(pads: Sequence[PlacedPad], possible: list[Via], present: list[Via]) -> list[Via]:
@@ -258,14 +252,20 @@ def _away_mm(pad: PlacedPad, vias: Sequence[Via]) -> NDArray[np.float64]:
 
 
 def _stitched(
-    sheets: dict[Side, Sheet], kept: Kept, possible: list[Via], bypasses: Sequence[PlacedPad]
+    sheets: dict[Side, Sheet], own: Routing, possible: list[Via], bypasses: Sequence[PlacedPad]
 ) -> tuple[dict[Side, list[int]], list[Via]]:
     """Join more pieces of pour to those that are ground, and all of them at many places.
 
+    Args:
+        sheets: the pour of each side.
+        own: tracks and vias of ground.
+        possible: vias that could be added.
+        bypasses: ground pads that want a via near.
+
     Returns:
-        Pieces that are ground, of each side; vias beyond those kept.
+        Pieces that are ground, of each side; vias to add.
     """
-    ground = {side: set(kept.pieces[side]) for side in SIDES}
+    ground = {side: _grounded(sheets[side], side, own) for side in SIDES}
     places = [(v.x_mm, v.y_mm) for v in possible]
     on_side = [sheets[side].pieces_at(places) for side in SIDES]
     lands = [
@@ -273,7 +273,6 @@ def _stitched(
         for via, *on in zip(possible, *on_side, strict=True)
         if min(on) >= 0
     ]
-    taken = [(v.x_mm, v.y_mm) for v in kept.vias]
     stitches: list[Via] = []
     grown = True
     while grown:
@@ -286,7 +285,16 @@ def _stitched(
                 stitches.append(via)
                 grown = True
     used = {(v.x_mm, v.y_mm): v for v, on in lands if all(on[s] in ground[s] for s in SIDES)}
-    stitches += _beside(bypasses, list(used.values()), [*kept.vias, *stitches])
-    taken += [(v.x_mm, v.y_mm) for v in stitches]
+    stitches += _beside(bypasses, list(used.values()), [*own.vias, *stitches])
+    taken = [(v.x_mm, v.y_mm) for v in (*own.vias, *stitches)]
     stitches += [used[at] for at in spread(sorted(used), taken, APART_MM)]
     return {side: sorted(found) for side, found in ground.items()}, stitches
+
+
+def _grounded(sheet: Sheet, side: Side, own: Routing) -> set[int]:
+    """Pieces of pour that pads of ground are bridged to, or that its tracks and vias touch."""
+    copper: list[Geometry] = [shapely.Point(via.x_mm, via.y_mm) for via in own.vias]
+    copper += [shapely.LineString([t.start, t.end]) for t in own.tracks if t.side == side]
+    cores = np.array(copper, dtype=object)
+    touched = shapely.STRtree(sheet.pieces).query(cores, predicate="intersects")[1]
+    return {*touched.tolist(), *(piece for found in sheet.reached for piece in found)}

@@ -15,7 +15,7 @@ from lumitip_fab.boards.route.trees import CostWeights, State, Unreachable, conn
 VIA_MM = 10.0  # of track that a via is worth
 SEARCHED_VIA_MM = 12.0  # the same while ways with fewer are looked for
 GROUND_COSMETIC_VIA_MM = 4.0
-GROUND_VIA_MM = 1.0  # the pour has vias of its own, and takes away those that it makes needless
+GROUND_VIA_MM = 1.0  # vias of ground join the pour of both sides
 FIRST_PRICE = 2.0  # of a net in the way
 GROWTH = 1.6  # of that price with each round
 TOP_PRICE = 60.0

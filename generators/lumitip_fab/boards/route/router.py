@@ -199,8 +199,8 @@ def route(placement: Placement) -> Routing:
 
     Returns:
         Tracks and vias, the same for the same placement. Ground is routed like any other net,
-        with the thinnest tracks; `pour` then takes away what its filled areas, which carry the
-        current, make needless, and joins the vias beside capacitors, which no track leads to.
+        with the thinnest tracks, so that no pad depends on the filled areas of `pour`; these carry
+        the current, and join the vias beside capacitors, which no track leads to.
 
     Raises:
         BuildError: there is not enough room; names the nets and the places.
