@@ -86,6 +86,10 @@ def silk_lines_thin(files: Files) -> None:
     edit(files, "F_Silkscreen.gbr", rb"(%ADD\d+C,)0\.15\*", rb"\g<1>0.1*")
 
 
+def silk_lines_thick(files: Files) -> None:
+    edit(files, "F_Silkscreen.gbr", rb"(%ADD\d+C,)0\.15\*", rb"\g<1>0.6*")
+
+
 def silk_lost(files: Files) -> None:
     (name,) = (n for n in files if n.endswith("B_Silkscreen.gbr"))
     files[name] = files[name].replace(b"D01*", b"D02*")
@@ -179,6 +183,7 @@ FIRST_DAMAGES: dict[Damage, set[str]] = {
     drill_larger: {"drills", "same"},
     silk_on_a_pad: {"silk", "silk_clear", "same"},
     silk_lines_thin: {"silk", "same"},
+    silk_lines_thick: {"silk", "silk_clear", "white", "same"},
     silk_lost: {"silk", "words", "same"},
     note_missing: {"readable"},
     note_of_the_mark: {"note"},

@@ -74,6 +74,11 @@ def diode_turned(text: str) -> str:
     return swapped_pads(text, "Z5", "1", "2")
 
 
+def diode_of_usb_turned(text: str) -> str:
+    """Pads of the diode at D- with each other's number."""
+    return swapped_pads(text, "Z14", "1", "2")
+
+
 def resistor_small(text: str) -> str:
     return in_part(text, "R8", r'value "1K"', 'value "100R"')
 
@@ -116,6 +121,8 @@ DAMAGES: dict[Damage, set[str]] = {
         *("protection", "protection_line", "protection_pins", "protection_pulse"),
     },
     diode_turned: {"lands", "joined", "apart", "silk_marks"}
+    | {"protection", "protection_reach", "protection_pulse"},
+    diode_of_usb_turned: {"lands", "joined", "apart", "silk_marks"}
     | {"protection", "protection_reach", "protection_pulse"},
     resistor_small: {"protection_pulse"},
     capacitor_large: {"protection_line"},

@@ -153,7 +153,7 @@ def test_a_board_that_is_not_routed_is_refused() -> None:
     )
     tracks = tuple(Track("A", s, (-0.8, -4.9), (-0.8, 4.9), 2.0) for s in SIDES)
     poured = pour(wall, Routing(tracks, (), 1))
-    with pytest.raises(BuildError, match=r"net GND is in pieces: nothing reaches the part at \(5\.20"):
+    with pytest.raises(BuildError, match=r"net GND is in pieces: .* \(5\.20"):
         require_clean_drc(BoardModel(wall, *poured))
 
 

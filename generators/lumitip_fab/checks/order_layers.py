@@ -19,6 +19,9 @@ from lumitip_fab.design import Box
 PLACE_MM = 0.001
 MASK_GAP_MM = 0.1  # an opening round a pad, each side, at most
 INK_SHARE = 0.03  # of the room of a word, at least
+WHITE_PERCENT = 15.0
+"""Of the side with the cells, at most: white ink scatters some 0.8 of the infrared, so that the
+board's mean rises by at most 0.12, as much as solder masks differ by (assumed)."""
 _CHORD_MM = 0.01  # of arcs, off their chords: what differs by less than twice this is not seen
 _ROUND_MM2 = 0.01  # what chords of round pens leave of all lines of a side
 _SIDES = ("front", "back")
@@ -52,6 +55,9 @@ def measure_layers(
         yield of.figure("paste", off, 0, PLACE_MM, "mm²", "differs from the pads of mounted parts")
         bare = shapely.union(area(f"{side} mask"), shapely.difference(_all(outline), outline))
         yield from _silk(of, read, side == "front", area(f"{side} silk"), bare)
+        if read.cells_hold and side == "front":
+            white = 100 * area(f"{side} silk").area / outline.area
+            yield of.figure("white", white, 0, WHITE_PERCENT, "%", "of the board, in white ink")
     yield from _edge(path, outline, area("outline"))
     yield from _drills(path, read, layers)
 

@@ -30,6 +30,8 @@ def run(options: argparse.Namespace) -> int:
     else:
         _print_table(rows, OUT)
         _print_choices(choices, OUT)
+        if not options.out:
+            OUT.print("\nMasses and strength are measured in built files: add --out FOLDER.")
     return 0
 
 

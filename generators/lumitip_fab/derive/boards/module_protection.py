@@ -28,8 +28,10 @@ DIODE_MM, SUPPLY_DIODE_MM = 3.85, 4.55
 """From J4's row to a diode, beyond the name of its wire; that of the supply is longer."""
 SWITCH_DIODE: tuple[Point, float] = (-13.75, -16.6), 270.0
 """Beside J5."""
-DEBUGGER_DIODE: tuple[Point, float] = (-25.6, 11.6), 270.0
-"""Beside J7, which has the controller's supply as well."""
+DEBUGGER_Y_MM, DEBUGGER_X_MM = 11.4, {CONTROLLER: -25.6, "DIO": -23.06, "CLK": -20.7, "RST": -19.62}
+"""Below J7, which has the controller's supply as well; the last one beside the regulator."""
+USB_Y_MM, USB_X_MM = 17.83, {"D-": -21.3, "D+": -19.6}
+"""Below J6, beside the holes for ties."""
 FIRST_AT: Point = (-24.95, -6.6)
 """The first part of the row, below the antenna's keep-out."""
 LAST_X_MM, ROW_Y_MM, PITCH_MM = -12.95, -6.3, 1.2
@@ -93,7 +95,9 @@ def _ends(signals: tuple[str, ...], middle: Point) -> Iterator[tuple[str, Place]
         above_mm = SUPPLY_DIODE_MM if net == CONTROLLER else DIODE_MM
         yield net, ((first_mm + i * pitch_mm, middle[1] + above_mm), 90.0)
     yield SWITCH, SWITCH_DIODE
-    yield CONTROLLER, DEBUGGER_DIODE
+    for y_mm, row in ((DEBUGGER_Y_MM, DEBUGGER_X_MM), (USB_Y_MM, USB_X_MM)):
+        for net, x_mm in row.items():
+            yield net, ((x_mm, y_mm), 270.0)
 
 
 def _at_pins(config: Input, module: Module, muxing: Muxing) -> Iterator[Component]:

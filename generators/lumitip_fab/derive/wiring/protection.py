@@ -38,6 +38,9 @@ PIN_MM = 5.0
 """From resistor and capacitor to the pin, at most."""
 HBM_OHM = 1500.0
 """Resistor of the human-body model (JEDEC JS-001)."""
+MODULE_SIGNALS = ("D-", "D+", "DIO", "CLK", "RST")
+"""Wires of a module's USB and debugger, which go to its pins without a resistor. The supply of USB
+has a capacitor beside the module."""
 MOST_SHARE = 0.5
 """Of the current of that model that a pin takes here."""
 
@@ -76,7 +79,8 @@ def clamped(config: Input, muxing: Muxing) -> tuple[str, ...]:
     if controller.module is None:
         on_wires[REGULATED] = config.parts.flange.regulator.output_v
     fitting = (net for net, volts in on_wires.items() if _holds(diode, volts))
-    return (*lines(config, muxing), *fitting)
+    direct = MODULE_SIGNALS if controller.module is not None else ()
+    return (*lines(config, muxing), *fitting, *direct)
 
 
 def _holds(diode: EsdDiode, volts: float) -> bool:
