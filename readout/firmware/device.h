@@ -1,5 +1,6 @@
 // The device: scans at a steady rate, makes packets, and hands them to Bluetooth and serial.
-// Nothing here blocks but the settling of the inputs, and nothing is allocated.
+// Nothing here blocks but the settling of the inputs, and Bluetooth where its radio has no room
+// left. Nothing is allocated.
 //
 // Board: what a Scanner needs of its Hardware, and
 //   microseconds() -> uint32_t
@@ -54,6 +55,8 @@ class Device {
     }
     if (now - due_ >= PERIOD_US) {
       faults_ |= LATE;
+      // Frames that there was no time for are counted, so that a reader sees them as lost.
+      sequence_ = static_cast<uint16_t>(sequence_ + (now - due_) / PERIOD_US);
       due_ = now;
     }
     due_ += PERIOD_US;
@@ -102,6 +105,9 @@ class Device {
       board_.light(on);
       board_.waitUs(EMITTER_US);
     });
+    if (scanner_.bright()) {
+      faults_ |= AMBIENT;
+    }
   }
 
   bool onTime(uint32_t now) const {

@@ -110,8 +110,9 @@ class Nano {
     BLE.setLocalName(LUMITIP_DEVICE_NAME);
     BLE.setDeviceName(LUMITIP_DEVICE_NAME);
     BLE.setConnectionInterval(6, 12);  // in steps of 1.25 ms: 7.5 to 15 ms
-    // In steps of 10 ms: until a computer that vanished counts as gone, the radio takes packets for
-    // it and then blocks. Some ask for longer than the watchdog waits.
+    // In steps of 10 ms: until a computer that vanished counts as gone, ArduinoBLE takes packets
+    // for it and then waits for room. That wait may last beyond the connection, since packets of
+    // one that ended are not counted as sent: the watchdog then starts the device anew.
     BLE.setSupervisionTimeout(100);
     service_.addCharacteristic(frames_);
     service_.addCharacteristic(status_);

@@ -13,6 +13,7 @@
 namespace lumitip {
 
 constexpr uint16_t FULL_SCALE = (1u << ADC_BITS) - 1;
+constexpr uint16_t BRIGHT_SHARE = 4;  // ambient light leaves less than a quarter of a cell's range
 
 // The pull-up charges the line until half a step of the bits sent is left: R C ln(2^(BITS + 1)).
 constexpr double CHARGED_US = PULL_UP_OHM * 1e-6 * LINE_PF * 0.6931472 * (BITS + 1);
@@ -64,11 +65,17 @@ class Scanner {
     scan(unlit);
     light(true);
     scan(codes);
+    bright_ = false;
     for (uint16_t cell = 0; cell < CELLS; ++cell) {
+      bright_ = bright_ || unlit[cell] < FULL_SCALE / BRIGHT_SHARE;
       const uint32_t code = uint32_t{codes[cell]} + (FULL_SCALE - unlit[cell]);
       codes[cell] = static_cast<uint16_t>(code < FULL_SCALE ? code : FULL_SCALE);
     }
   }
+
+  // Whether the ambient light of the last frame was so bright that the emitter's could not be told
+  // from it: such cells read as covered.
+  bool bright() const { return bright_; }
 
  private:
   static bool inUse(uint16_t channel) {
@@ -106,6 +113,7 @@ class Scanner {
 
   Hardware& hardware_;
   uint16_t selected_ = 0;
+  bool bright_ = false;
 };
 
 }  // namespace lumitip

@@ -7,7 +7,9 @@
 #include "layout.h"
 
 #ifndef LUMITIP_BITS
-#define LUMITIP_BITS 8  // of each value sent: 8, 10 or 12, not more than the converter has
+// Of each value sent: 8, 10 or 12, not more than the converter has. Inputs settle to half a step
+// of 8 bits in any case.
+#define LUMITIP_BITS 8
 #endif
 #ifndef LUMITIP_PERIOD_US
 #define LUMITIP_PERIOD_US 5000  // from frame to frame
@@ -28,7 +30,7 @@
 #define LUMITIP_SETTLE_FACTOR 2  // shortest wait, times the charging of the line: for long wires
 #endif
 #ifndef LUMITIP_WATCHDOG_S
-#define LUMITIP_WATCHDOG_S 10  // longer than a lost connection blocks the radio; 0: none
+#define LUMITIP_WATCHDOG_S 10  // a lost connection may block the radio for as long; 0: for ever
 #endif
 #ifndef LUMITIP_EMITTER_PIN
 #define LUMITIP_EMITTER_PIN -1  // switches the LEDs, high is on; -1: they are always on
@@ -51,7 +53,7 @@ constexpr int32_t CONVERSION_US = LUMITIP_CONVERSION_US;
 constexpr uint8_t SETTLE_FACTOR = LUMITIP_SETTLE_FACTOR;
 constexpr int EMITTER_PIN = LUMITIP_EMITTER_PIN;
 constexpr uint32_t EMITTER_US = LUMITIP_EMITTER_US;
-constexpr uint8_t FIRMWARE_VERSION[3] = {1, 1, 0};
+constexpr uint8_t FIRMWARE_VERSION[3] = {1, 2, 0};
 
 static_assert(LUMITIP_PERIOD_US >= 100 && LUMITIP_PERIOD_US <= 65535, "PERIOD_US: 100 to 65535");
 static_assert(LUMITIP_RADIO_US >= 0 && LUMITIP_RADIO_US <= 65535, "RADIO_US: 0 to 65535");

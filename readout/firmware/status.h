@@ -16,7 +16,8 @@ enum Fault : uint16_t {
   NOTIFY_FAILED = 2,   // the Bluetooth stack refused a notification
   SERIAL_FULL = 4,     // the serial line was not read in time: packets were left out there
   LATE = 8,            // a scan began a whole period late or more
-  WATCHDOG_RESET = 16  // the watchdog started the device anew
+  WATCHDOG_RESET = 16,  // the watchdog started the device anew
+  AMBIENT = 32         // ambient light filled most of a cell's range: it reads as covered
 };
 
 constexpr size_t STATUS_BYTES = 20;

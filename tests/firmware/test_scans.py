@@ -20,10 +20,11 @@ def test_several_conversions_and_ambient_light(
 ) -> None:
     done = run(str(host_program("scans", "published")))
     assert done.returncode == 0, done.stderr
-    mean, lit, counts, _ = done.stdout.splitlines()
+    mean, lit, bright, counts, _ = done.stdout.splitlines()
     layout = Layout.load(sketch("published").parent / "layout.json")
     assert set(mean.split()) == {"102"}  # 101.5, rounded
     assert lit.split() == [str(4095 - 1000 - 17 * mux) for mux in layout.mux.tolist()]
+    assert bright.split() == ["0", "0", "1"], "ambient light of one, two and over three quarters"
     assert counts.split() == ["7", "8", "0"]
 
 

@@ -47,7 +47,7 @@ STATUS_BYTES = _STATUS.size
 
 
 class Fault(IntFlag):
-    """Faults of the device since power-on."""
+    """Faults of the device since power-on, but for `MTU_TOO_SMALL`, which is of now."""
 
     MTU_TOO_SMALL = 1
     """A frame does not fit into a notification; none is sent."""
@@ -56,9 +56,11 @@ class Fault(IntFlag):
     SERIAL_FULL = 4
     """The serial buffer was full; the frames of a packet are lost."""
     LATE = 8
-    """A scan began late."""
+    """A scan began a whole period late or more; the frames that there was no time for are lost."""
     WATCHDOG = 16
     """The watchdog restarted the device."""
+    AMBIENT = 32
+    """Ambient light took more than three quarters of a cell's range: it reads as covered."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,7 @@ class Status:
     """First 16 hexadecimal digits of the design hash."""
     cells: int
     mtu: int
-    """ATT MTU of the connection; 23 before negotiation."""
+    """ATT MTU of the connection at the last frame: 0 without one, 23 before negotiation."""
     needed_mtu: int
     """Smallest ATT MTU for one frame."""
     faults: Fault

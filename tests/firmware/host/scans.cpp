@@ -11,10 +11,11 @@ struct Noisy : BenchBoard {
 
 struct Lit : BenchBoard {
   bool lit = true;
-  // Ambient light takes 300 of the full scale, the emitter 1000 and 17 more for each channel.
+  uint16_t ambient = 300;
+  // Of the full scale ambient light takes some, the emitter 1000 and 17 more for each channel.
   uint16_t read(uint16_t mux) {
     const uint16_t through = lit ? 1000 + static_cast<uint16_t>(17 * mux) : 0;
-    return static_cast<uint16_t>(lumitip::FULL_SCALE - 300 - through);
+    return static_cast<uint16_t>(lumitip::FULL_SCALE - ambient - through);
   }
 };
 
@@ -36,8 +37,16 @@ int main() {
   Lit board;
   lumitip::Scanner<Lit> scanner(board);
   scanner.begin();
-  scanner.scan(codes, [&](bool on) { board.lit = on; });
+  const auto light = [&](bool on) { board.lit = on; };
+  scanner.scan(codes, light);
   print(codes);
+  for (unsigned quarter = 1; quarter <= 3; ++quarter) {
+    board.ambient = static_cast<uint16_t>(lumitip::FULL_SCALE / 4 * quarter);
+    board.ambient = static_cast<uint16_t>(board.ambient + (quarter == 3 ? 10 : 0));
+    scanner.scan(codes, light);
+    printf("%d ", scanner.bright());
+  }
+  printf("\n");
 
   BenchBoard order;
   lumitip::Scanner<BenchBoard> once(order);
