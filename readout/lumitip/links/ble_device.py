@@ -1,6 +1,7 @@
 """Search for a Bluetooth device, and checks of its status."""
 
 import asyncio
+import logging
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,14 +15,18 @@ from bleak.backends.scanner import AdvertisementData
 from lumitip import errors
 from lumitip.layout import Layout
 from lumitip.protocol.bluetooth import (
+    FAULT_TEXTS,
     FRAMES,
     LEGACY_FRAMES,
     LEGACY_SERVICE,
     SERVICE,
     STATUS,
+    Fault,
     Status,
 )
 from lumitip.protocol.packet import PacketError
+
+_log = logging.getLogger(__name__)
 
 SETTLE_S = 1.5  # devices advertise once a second: enough to see others of the same name
 _ADDRESS = re.compile(r"([0-9A-F]{2}:){5}[0-9A-F]{2}|[0-9A-F]{8}(-[0-9A-F]{4}){3}-[0-9A-F]{12}")
@@ -124,15 +129,27 @@ async def begin(
     def frames(_: BleakGATTCharacteristic, data: bytearray) -> None:
         notified(data)
 
+    reported = Fault(0)
+
+    def report(status: Status) -> None:
+        nonlocal reported
+        for fault, text in FAULT_TEXTS.items():
+            if fault in status.faults and fault not in reported:
+                _log.warning("%s: %s", client.address, text)
+        reported = status.faults
+
     def status_changed(_: BleakGATTCharacteristic, data: bytearray) -> None:
         try:
-            check_mtu(Status.decode(bytes(data)))
+            status = Status.decode(bytes(data))
+            report(status)
+            check_mtu(status)
         except (errors.LinkError, PacketError) as error:
             failed(error if isinstance(error, errors.LinkError) else errors.LinkError(str(error)))
 
     if client.services.get_characteristic(FRAMES):
         status = await _status(client)
         check(status, layout, any_design, client.address)
+        report(status)
         await client.start_notify(STATUS, status_changed)
         # StartNotify, because the socket of AcquireNotify drops data silently.
         await client.start_notify(FRAMES, frames, bluez={"use_start_notify": True})

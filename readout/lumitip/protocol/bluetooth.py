@@ -63,6 +63,17 @@ class Fault(IntFlag):
     """Ambient light took more than three quarters of a cell's range: it reads as covered."""
 
 
+FAULT_TEXTS = {
+    Fault.NOTIFY_FAILED: "its Bluetooth rejected a notification; frames were lost",
+    Fault.SERIAL_FULL: "its serial line was not read in time; frames were lost there",
+    Fault.LATE: "a scan began late; frames were lost",
+    Fault.WATCHDOG: "its watchdog restarted it",
+    Fault.AMBIENT: "ambient light takes most of a cell's range, and the cell reads as covered: "
+    "shade the fingers",
+}
+"""Faults that do not end a connection, in words."""
+
+
 @dataclass(frozen=True)
 class Status:
     """Contents of the status characteristic."""

@@ -23,12 +23,12 @@ class Device:
         self.layout = layout
         self.design = design or layout.design_hash
         self.mtu = mtu
+        self.faults = Fault(0)
 
     def status(self) -> bytes:
         needed = needed_mtu(len(self.layout), 8)
-        return Status(
-            (1, 0, 0), self.design[:16], len(self.layout), self.mtu, needed, Fault(0)
-        ).encode()
+        design, cells = self.design[:16], len(self.layout)
+        return Status((1, 0, 0), design, cells, self.mtu, needed, self.faults).encode()
 
     def packet(self, sequence: int, frames: int = 1, time_us: int | None = None) -> bytes:
         """Frames whose values are their number modulo 251."""

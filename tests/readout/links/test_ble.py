@@ -11,7 +11,7 @@ from fake_bluez import FakeBluez
 from fingertip_peers import HERE, THERE, add_fingertip, send
 from lumitip import Fingertip, FingertipGroup
 from lumitip.errors import AmbiguousDevice, DeviceNotFound, LinkTimeout, MtuTooSmall, WrongDesign
-from lumitip.protocol.bluetooth import FRAMES, LEGACY_FRAMES, LEGACY_SERVICE, STATUS
+from lumitip.protocol.bluetooth import FRAMES, LEGACY_FRAMES, LEGACY_SERVICE, STATUS, Fault
 
 V1 = {LEGACY_SERVICE: {LEGACY_FRAMES: ["read", "notify"]}}
 
@@ -71,6 +71,21 @@ def test_an_mtu_that_shrinks_later_is_told(bluez: FakeBluez, device) -> None:
         send(bluez, peer, device.status(), uuid=STATUS)
         with pytest.raises(MtuTooSmall):
             tip.read(5.0)
+
+
+def test_faults_of_the_status_are_logged_once(
+    bluez: FakeBluez, device, until: Until, caplog: pytest.LogCaptureFixture
+) -> None:
+    device.faults = Fault.WATCHDOG
+    peer = add_fingertip(bluez, device)
+    with Fingertip.open("ble://Lumitip", device.layout):
+        assert [r.getMessage() for r in caplog.records] == [f"{HERE}: its watchdog restarted it"]
+        device.faults = Fault.WATCHDOG | Fault.AMBIENT
+        for _ in range(2):
+            send(bluez, peer, device.status(), uuid=STATUS)
+        until(lambda: len(caplog.records) > 1)
+    _, bright = (record.getMessage() for record in caplog.records)
+    assert "reads as covered: shade the fingers" in bright
 
 
 def test_repeated_late_and_damaged_packets(bluez: FakeBluez, device, until: Until) -> None:
