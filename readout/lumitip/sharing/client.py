@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from lumitip.listening import keep_alive
 from lumitip.protocol import messages
 from lumitip.protocol.messages import Kind, MessageError
 
@@ -78,6 +79,7 @@ class Client:
             try:
                 self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BYTES)
                 self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                keep_alive(self._socket)
                 joins(self, messages.decode_request(self._request()))
                 self._send()
             except MessageError as error:
