@@ -3,6 +3,7 @@
 import asyncio
 import logging
 import re
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -28,6 +29,10 @@ from lumitip.protocol.packet import PacketError
 
 _log = logging.getLogger(__name__)
 
+MTU_WAIT_S = 2.0
+"""Longest wait for the MTU: a device updates its status with each frame. Until then the status
+names 0 or, before the two ends have agreed, a smaller MTU."""
+_AGAIN_S = 0.1
 SETTLE_S = 1.5  # devices advertise once a second: enough to see others of the same name
 _ADDRESS = re.compile(r"([0-9A-F]{2}:){5}[0-9A-F]{2}|[0-9A-F]{8}(-[0-9A-F]{4}){3}-[0-9A-F]{12}")
 """A Bluetooth address, or the UUID that macOS uses instead."""
@@ -147,8 +152,7 @@ async def begin(
             failed(error if isinstance(error, errors.LinkError) else errors.LinkError(str(error)))
 
     if client.services.get_characteristic(FRAMES):
-        status = await _status(client)
-        check(status, layout, any_design, client.address)
+        status = await _checked(client, layout, any_design)
         report(status)
         await client.start_notify(STATUS, status_changed)
         # StartNotify, because the socket of AcquireNotify drops data silently.
@@ -158,6 +162,25 @@ async def begin(
         await client.start_notify(LEGACY_FRAMES, frames, bluez={"use_start_notify": True})
         return Service(1, None)
     raise _no_fingertip(client)
+
+
+async def _checked(client: BleakClient, layout: Layout, any_design: bool) -> Status:
+    """The status of a device that matches, once its MTU is large enough.
+
+    Raises:
+        LinkError: as `check`; `MtuTooSmall` only after `MTU_WAIT_S`.
+    """
+    until = time.monotonic() + MTU_WAIT_S
+    while True:
+        status = await _status(client)
+        try:
+            check(status, layout, any_design, client.address)
+        except errors.MtuTooSmall:
+            if time.monotonic() >= until:
+                raise
+            await asyncio.sleep(_AGAIN_S)
+        else:
+            return status
 
 
 def check(status: Status, layout: Layout, any_design: bool, address: str) -> None:

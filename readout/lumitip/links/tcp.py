@@ -3,10 +3,12 @@
     tcp://HOST:PORT?token=TEXT
 
 The default port is 8643. The server sends the layout, so none is needed. It prints the token if
-clients need one. If the server is gone the link is lost, and connects again once it is back; if the
-server's device has failed for good, the link fails too.
+clients need one. If the server is gone the link is lost, and connects again once it is back; a
+server that vanishes without a word (power cut, pulled cable) is noticed after 11 s. If the server's
+device has failed for good, the link fails too.
 """
 
+import errno
 import re
 import socket
 import threading
@@ -29,6 +31,7 @@ from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Deliver, Fault, LinkEvent, Report
 from lumitip.links.thread import ThreadedLink, keep_connected
 from lumitip.links.url import Url
+from lumitip.listening import keep_alive
 from lumitip.protocol import messages
 from lumitip.protocol.messages import Kind, MessageDecoder, MessageError
 from lumitip.protocol.packet import ForeignPacketError, PacketError, decode
@@ -89,6 +92,7 @@ class Connection:
                 f"{address}: {error.strerror or error}. Is `lumitip serve` running there?"
             ) from error
         try:
+            keep_alive(self._socket)
             self._socket.settimeout(_WAIT_S)
             self._socket.sendall(messages.encode_request(address.token))
             self._received = self._receive()
@@ -119,7 +123,9 @@ class Connection:
         while not self._stopping.is_set():
             try:
                 chunk = self._socket.recv(_CHUNK_BYTES)
-            except TimeoutError:
+            except TimeoutError as error:
+                if error.errno == errno.ETIMEDOUT:  # of keepalive; `_WAIT_S` has no number
+                    raise
                 yield None
                 continue
             t_host = time.monotonic()

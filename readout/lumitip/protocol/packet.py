@@ -138,6 +138,10 @@ def decode(data: bytes, cells: int) -> Packet:
     magic, version, design, sequence, frames, bits, time_us, period_us = fields
     if magic != MAGIC:
         raise PacketError("magic", f"the first byte is 0x{magic:02x}; a packet has 0x{MAGIC:02x}")
+    end = len(data) - CRC_BYTES
+    whole = crc_hqx(data[:end], 0xFFFF) == _CRC.unpack_from(data, end)[0]
+    if not whole and (version != VERSION or bits not in BITS):
+        raise _wrong_checksum(data)
     if version != VERSION:
         raise PacketError(
             "version",
@@ -146,8 +150,6 @@ def decode(data: bytes, cells: int) -> Packet:
         )
     if bits not in BITS:
         raise PacketError("bits", f"bits is {bits}; allowed are {BITS}")
-    end = len(data) - CRC_BYTES
-    whole = crc_hqx(data[:end], 0xFFFF) == _CRC.unpack_from(data, end)[0]
     length = packet_bytes(frames, cells, bits)
     if frames < 1 or len(data) != length:
         text = (
@@ -159,11 +161,15 @@ def decode(data: bytes, cells: int) -> Packet:
         found = (end - HEADER_BYTES) * 8 // (frames * bits) if frames else 0
         raise ForeignPacketError(design, found, text + f"comes from a fingertip of {found} cells")
     if not whole:
-        raise PacketError("crc", f"the checksum of {len(data)} bytes is wrong")
+        raise _wrong_checksum(data)
     codes = _unpacked(data[HEADER_BYTES:end], frames * cells, bits)
     values = codes.reshape(frames, cells)
     values.flags.writeable = False
     return Packet(design, sequence, bits, time_us, period_us, values)
+
+
+def _wrong_checksum(data: bytes) -> PacketError:
+    return PacketError("crc", f"the checksum of {len(data)} bytes is wrong")
 
 
 def _check(packet: Packet, values: Codes) -> None:

@@ -117,6 +117,13 @@ _SEQUENCES = 1 << 16
 _TIMES = 1 << 32  # 71.6 minutes of microseconds
 _LATE_US = 1_000_000  # longest delay of a packet that others overtake
 _AHEAD_US = 10_000_000  # longest stall of a link
+# After a reconnection the device clock must have gone on for as long as the host's, less this. The
+# first packet may be that much older on arrival than the last one before: it was read while the
+# link connected, or waited behind other data. Below 3 s, so that a device that was off for a few
+# seconds is noticed. The share is for the skew: crystals are within 0.01 %, ceramic resonators and
+# trimmed oscillators of controllers within 1 %.
+_BEHIND_US = 2_000_000
+_BEHIND_SHARE = 0.01
 
 
 @dataclass(frozen=True)
@@ -152,7 +159,8 @@ class Timeline:
     def place(self, packet: Packet, t_host: float) -> Place:
         """Position of the next packet.
 
-        If only one of its number and its time continues, the device has restarted.
+        If only one of its number and its time continues, or its time is far behind after a
+        reconnection, the device has restarted.
         """
         if self._t_host is None:
             return self._keep(packet, t_host, Place(0, packet.time_us, 0, 0), packet.sequence)
@@ -163,7 +171,8 @@ class Timeline:
         sequence = _nearest(packet.sequence, _SEQUENCES, self._sequence + steps)
         step = sequence - self._sequence
         oldest_us = 0 if self._fresh else -_LATE_US
-        goes_on = step > 0 and 0 < step_us <= waited_us + _AHEAD_US
+        least_us = (1.0 - _BEHIND_SHARE) * waited_us - _BEHIND_US if self._fresh else 0.0
+        goes_on = step > 0 and step_us > 0 and least_us <= step_us <= waited_us + _AHEAD_US
         if goes_on:
             place = Place(self._seq + step, time_us, 0, step - 1)
         elif step <= 0 and oldest_us <= step_us <= 0:

@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from lumitip.listening import keep_alive
 from lumitip.protocol import messages
 from lumitip.protocol.messages import Kind, MessageError
 
@@ -19,7 +20,7 @@ _SEND_BYTES = 1 << 14  # of the operating system: what it holds is old when a sl
 
 @dataclass(frozen=True)
 class ClientCounts:
-    """Counts of one client."""
+    """Counts of one client; a message of a fault counts as one frame."""
 
     name: str
     """Its address and port."""
@@ -54,7 +55,7 @@ class Client:
             return ClientCounts(self._name, self._sent, self._dropped)
 
     def put(self, message: bytes, frames: int = 0) -> None:
-        """Queue a message that holds some frames. Never waits."""
+        """Queue a message that counts as some frames. Never waits."""
         with self._changed:
             if self._closed:
                 return
@@ -78,6 +79,7 @@ class Client:
             try:
                 self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BYTES)
                 self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                keep_alive(self._socket)
                 joins(self, messages.decode_request(self._request()))
                 self._send()
             except MessageError as error:
@@ -133,7 +135,7 @@ class Client:
             self._socket.settimeout(None)
 
     def _drop(self) -> None:
-        """Drop the oldest message with frames; events stay."""
+        """Drop the oldest message that counts as frames; events stay."""
         at = next(i for i, (_, frames) in enumerate(self._waiting) if frames)
         _, frames = self._waiting[at]
         del self._waiting[at]

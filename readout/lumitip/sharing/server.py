@@ -57,7 +57,8 @@ class FingertipServer:
             port: 0 is any free one.
             token: secret that clients must send; default: random if needed.
             timeout: of the connection to the fingertip (s); `None`: no limit.
-            buffer: frames that may wait for each client.
+            buffer: frames that may wait for each client; a packet that could not be read counts as
+                one.
             any_design: accept a device of another design.
 
         Raises:
@@ -205,7 +206,7 @@ class FingertipServer:
                 "why": content.why,
                 "foreign": [foreign.design, foreign.cells] if foreign else None,
             }
-            self._send(messages.encode_json(Kind.FAULT, record))
+            self._send(messages.encode_json(Kind.FAULT, record), 1)
         elif isinstance(content, np.ndarray):
             self._send(messages.encode(Kind.LEGACY, content.tobytes()), 1)
 

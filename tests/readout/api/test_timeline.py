@@ -119,6 +119,45 @@ def test_a_restart_soon_after_the_start_is_seen_once_the_link_was_cut() -> None:
     assert place.lost is None
 
 
+def _place_after_outage(before_s: float, away_s: float, now_s: float) -> Place:
+    """Place of the first packet after an outage, by the uptimes of the device around it."""
+    timeline = Timeline()
+    timeline.place(_packet(int(before_s * 1e6 / PERIOD_US)), 1000.0)
+    timeline.reconnected()
+    return timeline.place(_packet(int(now_s * 1e6 / PERIOD_US)), 1000.0 + away_s)
+
+
+@pytest.mark.parametrize(
+    ("before_s", "away_s", "now_s"),
+    [(60.0, 605.0, 65.0), (2.0, 6.0, 5.0), (1.0, 10_800.0, 2000.0)],
+)
+def test_a_restart_within_an_outage_is_noticed_once_it_runs_longer_than_before(
+    before_s: float, away_s: float, now_s: float
+) -> None:
+    place = _place_after_outage(before_s, away_s, now_s)
+    assert (place.restarted, place.lost, place.seq) == (True, None, 4)
+    assert place.time_us == int(now_s * 1e6)
+
+
+@pytest.mark.parametrize("away_s", [0.5, 1.9, 6.0, 600.0, 4400.0, 10_800.0])
+@pytest.mark.parametrize("skew", [-0.009, 0.0])
+def test_an_outage_with_skew_and_a_late_first_packet_is_no_restart(
+    away_s: float, skew: float
+) -> None:
+    late_s = min(1.8, away_s / 2)
+    ran_s = away_s * (1.0 + skew) - late_s
+    place = _place_after_outage(60.0, away_s, 60.0 + ran_s)
+    assert not place.restarted
+    assert place.lost == int((60.0 + ran_s) * 1e6 / PERIOD_US) - 30_000 - 4
+
+
+def test_a_stall_before_an_outage_is_no_restart() -> None:
+    timeline = Timeline()
+    timeline.place(_packet(0), 9.0)  # read 9 s before it arrives
+    timeline.reconnected()
+    assert timeline.place(_packet(6000), 12.0).lost == 5996
+
+
 def test_a_link_that_stalls_for_seconds_is_no_restart() -> None:
     packets = [(3.0, _packet(n)) for n in range(0, 1500, 4)]
     places = _place([*packets, (3.004, _packet(1500))])

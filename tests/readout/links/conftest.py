@@ -76,6 +76,7 @@ def bluez(bus: str, monkeypatch: pytest.MonkeyPatch) -> Iterator["object"]:
     from fake_bluez import FakeBluez
 
     monkeypatch.setattr("lumitip.links.ble_device.SETTLE_S", 0.1)
+    monkeypatch.setattr("lumitip.links.ble_device.MTU_WAIT_S", 0.2)
     service = FakeBluez(bus)
     yield service
     service.stop()

@@ -64,6 +64,26 @@ def test_a_device_whose_frames_do_not_fit_is_refused(bluez: FakeBluez, device) -
     assert not bluez.connected(peer)
 
 
+@pytest.mark.parametrize("early_mtu", [0, 23])
+def test_a_status_from_before_the_mtu_was_agreed_is_read_again(
+    bluez: FakeBluez, device, until: Until, monkeypatch: pytest.MonkeyPatch, early_mtu: int
+) -> None:
+    monkeypatch.setattr("lumitip.links.ble_device.MTU_WAIT_S", 10.0)
+    peer = add_fingertip(bluez, device)
+    agreed_mtu, device.mtu = device.mtu, early_mtu
+    statuses = [device.status()] * 2
+    device.mtu = agreed_mtu
+
+    async def read(_: str) -> bytes:
+        return statuses.pop() if statuses else device.status()
+
+    peer.read = read
+    with Fingertip.open("ble://Lumitip", device.layout) as tip:
+        assert statuses == []
+        send(bluez, peer, device.packet(0))
+        until(lambda: tip.stats.received == 1)
+
+
 def test_an_mtu_that_shrinks_later_is_told(bluez: FakeBluez, device) -> None:
     peer = add_fingertip(bluez, device)
     with Fingertip.open("ble://Lumitip", device.layout) as tip:

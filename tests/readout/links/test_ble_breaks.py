@@ -29,7 +29,8 @@ def test_a_cut_link_is_made_again(bluez: FakeBluez, device, until: Until) -> Non
         with pytest.raises(LinkTimeout, match="is lost; reconnecting"):
             tip.read(0.0)
         until(lambda: tip.stats.reconnects == 1)
-        send(bluez, peer, device.packet(10, 2))
+        # A device time at which neither a quick nor a slow reconnection looks like a restart.
+        send(bluez, peer, device.packet(10, 2, 5_000_000))
         assert tip.read(5.0).dropped_before == 6
         assert tip.stats.reconnects == 1
         assert tip.stats.dropped["link"] == 6

@@ -101,6 +101,6 @@ def test_a_connection_that_the_device_ends(bluez: FakeBluez, device, until: Unti
         until(lambda: tip.stats.received == 1)
         bluez.run(peer.disconnect())
         until(lambda: tip.stats.reconnects == 1)
-        bluez.run(peer.notify(FRAMES, device.packet(9)))
+        bluez.run(peer.notify(FRAMES, device.packet(9, time_us=5_000_000)))
         until(lambda: tip.stats.received == 2)
         assert tip.stats.dropped["link"] == 8

@@ -96,6 +96,25 @@ def test_each_fault_has_its_reason(damage: Any, reason: str) -> None:
     assert caught.value.reason == reason
 
 
+@pytest.mark.parametrize("bit", range(8))
+def test_a_damaged_version_is_damage_and_no_other_firmware(bit: int) -> None:
+    data = encode(KNOWN)
+    with pytest.raises(PacketError, match="the checksum of 20 bytes is wrong") as caught:
+        decode(data[:1] + bytes([data[1] ^ 1 << bit]) + data[2:], 3)
+    assert caught.value.reason == "crc"
+    with pytest.raises(PacketError, match="flash the firmware") as other:
+        decode(resealed(data[:1] + bytes([data[1] ^ 1 << bit]) + data[2:]), 3)
+    assert other.value.reason == "version"
+
+
+@pytest.mark.parametrize("bits", [0x0B, 0x0E, 0x2A, 0x8A])
+def test_damaged_bits_are_damage(bits: int) -> None:
+    data = encode(KNOWN)
+    with pytest.raises(PacketError, match="checksum") as caught:
+        decode(data[:7] + bytes([bits]) + data[8:], 3)
+    assert caught.value.reason == "crc"
+
+
 def test_every_single_bit_flipped_is_noticed() -> None:
     data = encode(KNOWN)
     for bit in range(8 * len(data)):

@@ -7,6 +7,9 @@ from typing import Any
 
 import pytest
 
+from lumitip import LinkEvent
+from lumitip.links.base import Deliver, Report
+from lumitip.links.twin import published_layout
 from lumitip.sharing import FingertipServer
 
 Until = Callable[[Callable[[], bool]], None]
@@ -34,3 +37,29 @@ def until() -> Until:
             time.sleep(0.01)
 
     return wait
+
+
+class Legacy:
+    """A link of the published sensor, which the test drives."""
+
+    device_id = "legacy"
+
+    def __init__(self) -> None:
+        self.layout = published_layout()
+        self.deliver: Deliver
+        self.report: Report
+
+    def start(self, deliver: Deliver, report: Report) -> None:
+        self.deliver, self.report = deliver, report
+        report(LinkEvent("connected", "connected"))
+
+    def stop(self) -> None:
+        pass
+
+
+@pytest.fixture
+def link(monkeypatch: pytest.MonkeyPatch) -> Legacy:
+    """The link of the next server."""
+    link = Legacy()
+    monkeypatch.setattr("lumitip.sharing.server.open_link", lambda *_: link)
+    return link

@@ -258,27 +258,7 @@ def test_faults_of_the_line_reach_the_clients(serve, until, tmp_path) -> None:
             Fingertip.open(f"serial://{port}", layout)
 
 
-class Legacy:
-    """A link of the published sensor, which the test drives."""
-
-    device_id = "legacy"
-
-    def __init__(self) -> None:
-        self.layout = published_layout()
-
-    def start(self, deliver, report) -> None:
-        self.deliver, self.report = deliver, report
-        report(LinkEvent("connected", "connected"))
-
-    def stop(self) -> None:
-        pass
-
-
-def test_legacy_frames_and_lost_devices_are_shared(
-    serve, until, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    link = Legacy()
-    monkeypatch.setattr("lumitip.sharing.server.open_link", lambda *_: link)
+def test_legacy_frames_and_lost_devices_are_shared(serve, until, link) -> None:
     server = serve("ble://Published")
     with Fingertip.open(server.address) as tip:
         until(lambda: len(server.clients) == 1)
