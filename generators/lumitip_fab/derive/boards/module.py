@@ -43,7 +43,7 @@ MOST_WIRES = 9
 J4_AT: Point = (-20.1, -20.85)
 J5_END_MM, J5_Y_MM = -15.63, -12.85
 """Last pad of the row to the emitter: beyond it the floor holds a bolt of the flange."""
-J7_AT: Point = (-20.52, 15.4)
+J7_AT: Point = (-20.52, 15.2)
 """Between a panel's tab at the board's edge and a bolt of the flange."""
 FIDUCIALS_AT: tuple[Point, ...] = ((-25.6, 8.4), (13.0, -15.5), (-26.3, -10.9))
 _NAMED = {

@@ -28,9 +28,9 @@ DIODE_MM, SUPPLY_DIODE_MM = 3.85, 4.55
 """From J4's row to a diode, beyond the name of its wire; that of the supply is longer."""
 SWITCH_DIODE: tuple[Point, float] = (-13.75, -16.6), 270.0
 """Beside J5."""
-DEBUGGER_Y_MM, DEBUGGER_X_MM = 11.4, {CONTROLLER: -25.6, "DIO": -23.06, "CLK": -20.7, "RST": -19.62}
+DEBUGGER_Y_MM, DEBUGGER_X_MM = 11.2, {CONTROLLER: -25.6, "DIO": -23.06, "CLK": -20.7, "RST": -19.62}
 """Below J7, which has the controller's supply as well; the last one beside the regulator."""
-USB_Y_MM, USB_X_MM = 17.83, {"D-": -21.3, "D+": -19.6}
+USB_Y_MM, USB_X_MM = 17.62, {"D-": -21.3, "D+": -19.6}
 """Below J6, beside the holes for ties."""
 FIRST_AT: Point = (-24.95, -6.6)
 """The first part of the row, below the antenna's keep-out."""
