@@ -153,7 +153,7 @@ RECEIVER_DAMAGES: dict[Damage, set[str]] = {
     detector_reversed: {"lands", "polarity", "silk_marks"},
     track_narrow: {"track_width"},
     via_dropped: {"open", "service"},
-    vias_beside_dropped: {"bypass_via", "islands"},
+    vias_beside_dropped: {"bypass_via"},
     via_ring_thin: {"via_ring"},
     hole_moved: {"holes", "hole_clearance"},
     hole_narrow: {"hole_width", "pin_clearance"},

@@ -172,7 +172,7 @@ def stop_line_names_others_below(files: Files) -> None:
 
 
 FIRST_DAMAGES: dict[Damage, set[str]] = {
-    pour_missing: {"copper", "open", "same"},
+    pour_missing: {"copper", "same"},
     tracks_thin: {"copper", "same"},
     opening_missing: {"mask", "same"},
     mask_open_on_copper: {"exposed", "same"},

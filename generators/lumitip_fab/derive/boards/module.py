@@ -95,7 +95,6 @@ def derive_module(
     receiver, lit = connectors.receiver_signals(config, muxing), connectors.emitter_signals(config)
     pitch = connectors.WIDE[0]
     components = (
-        *module_protection(config, module, muxing, (receiver, J4_AT)),
         _module(config, module, muxing, at),
         *_beside(config),
         *_supply(config, supplies),
@@ -103,6 +102,8 @@ def derive_module(
         wires("J5", lit, connectors.WIDE, (J5_END_MM - (len(lit) - 1) / 2 * pitch, J5_Y_MM)),
         wires("J6", ("VUSB", "D-", "D+", "GND"), connectors.WIDE, (-21.0, 20.25)),
         wires("J7", (CONTROLLER, "DIO", "CLK", "RST", "GND"), connectors.WIDE, J7_AT),
+        # Last, since references find room in this order, and small parts can do without.
+        *module_protection(config, module, muxing, (receiver, J4_AT)),
     )
     return Wing(
         box=Box(left, box.x_max_mm, box.y_min_mm, box.y_max_mm),
