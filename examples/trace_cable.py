@@ -22,10 +22,12 @@ world = LiveTask(
 estimator = PoseEstimator(layout, tracking=True).prepare("cable")
 trace = Tracer(LineLaw(speed, gain_per_s=8.0, turn_per_s=10.0))
 with world.open() as tip, world.shown(tip, port):
+    before_s = tip.wait_latest(2.0).t
     for frame in tip.frames(timeout=2.0):
         if frame is not tip.latest():
             continue  # a newer one is here already
-        world.command(trace(estimator(frame.values, "cable"), world.period_s))
+        dt_s, before_s = frame.t - before_s, frame.t
+        world.command(trace(estimator(frame.values, "cable"), dt_s))
 m = world.metrics()
 print(f"{m.reason} after {m.travelled_mm:.0f} mm in {m.seconds:.1f} s")
 print(f"lateral {m.lateral_rms_mm:.2f} mm rms, angle {m.angle_rms_deg:.1f}° rms (simulated)")

@@ -23,11 +23,14 @@ estimator = PoseEstimator(layout, tracking=True).prepare("cable")
 trace = Tracer(LineLaw(speed, gain_per_s=4.0, turn_per_s=4.0))
 mount = Mount(x=(1, 0, 0), y=(0, 0, 1), origin_mm=(0, 0, 20))  # the sensor in the tool frame
 limits = ArmLimits(speed_mm_s=1.5 * speed, travel_mm=600.0, stale_s=0.3, watchdog_hz=5.0)
-with URArm(host, mount, limits) as arm, world.open() as tip:  # or Fingertip.open("ble://Lumitip")
+# Or Fingertip.open("ble://Lumitip"). The arm comes last, and so is the first to stop.
+with world.open() as tip, URArm(host, mount, limits) as arm:
+    before_s = tip.wait_latest(2.0).t
     for frame in tip.frames(timeout=2.0):
         if frame is not tip.latest():
             continue  # a newer one is here already
-        arm.move(trace(estimator(frame.values, "cable"), world.period_s), frame.t)
+        dt_s, before_s = frame.t - before_s, frame.t
+        arm.move(trace(estimator(frame.values, "cable"), dt_s), min(frame.t, frame.t_host))
         world.command(arm.measured())  # the cable slides through as the arm moves
 m = world.metrics()
 print(f"{m.reason} after {m.travelled_mm:.0f} mm in {m.seconds:.1f} s, arm: {arm.stopped}")

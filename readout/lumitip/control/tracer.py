@@ -18,13 +18,16 @@ _STEEPEST_DEG = 80.0  # a line across the way of the finger cannot be followed
 _CORNER_DEG = 30.0  # largest deviation of a corner from a right angle; flatter ones are curves
 _CORNER_MM = 13.0  # a vertex further from the middle is not seen by enough cells
 _BEARABLE = frozenset({"misfit", "unfinished", "ambiguous", "dead"})
+MOST_MISFIT = 40.0
+"""Of the cells from the fitted line, root mean square (of 255): the published bent cable, which is
+fitted straight, has 18 to 29, and another shape or nothing at all has 60 and more."""
 
 
 def sight_of(seen: Contact | Estimate) -> Sight:
     """The line to follow in a contact or an estimate.
 
     The border of a corner is followed like an edge. An estimate with other flags than misfit,
-    unfinished, ambiguous and dead has no line.
+    unfinished, ambiguous and dead, or whose cells are beyond `MOST_MISFIT`, has no line.
 
     Raises:
         ControlError: if `seen` is neither.
@@ -37,7 +40,8 @@ def sight_of(seen: Contact | Estimate) -> Sight:
             "Processor(layout)(frame.values)"
         )
     # A curved line misfits its straight model, but is a line.
-    if seen.kind not in KINDS or not _BEARABLE.issuperset(seen.flags):
+    bearable = _BEARABLE.issuperset(seen.flags) and not seen.rms_counts > MOST_MISFIT
+    if seen.kind not in KINDS or not bearable:
         return Sight()
     corner_mm = seen.vertex_mm and _corner_mm(seen.vertex_mm[0], seen.opening_deg)
     return _line(seen.offset_mm, seen.angle_deg, None, corner_mm)
@@ -112,8 +116,9 @@ class Tracer:
     """`command = tracer(contact_or_estimate, dt_s)`: follows the line in its input.
 
     Without a line it slows down for `slow_s`, then searches on the side where the line went and on
-    the other side for `search_s`, then stops with the reason `"lost"`. With `corner_at_mm` it stops
-    at a corner, with the vertex at that place.
+    the other side for `search_s`, then stops with the reason `"lost"`. A line that is seen takes
+    off as much of the time without one as it lasts: single frames do not keep a trace alive.
+    With `corner_at_mm` it stops at a corner that was ahead, with the vertex at that place.
     """
 
     def __init__(
@@ -172,6 +177,7 @@ class Tracer:
         self._unseen_s = 0.0
         self._side = 1.0
         self._corners = 0
+        self._ahead = False
         self._ended = ""
 
     def __repr__(self) -> str:
@@ -191,7 +197,7 @@ class Tracer:
         command = self.law(sight)
         if command is None:
             return self._without_line(dt_s)
-        self._unseen_s = 0.0
+        self._unseen_s = max(0.0, self._unseen_s - dt_s)
         command = self.limits.of(self._before_corner(command, sight))
         if command.state == "stop":
             self._ended = command.reason
@@ -208,7 +214,9 @@ class Tracer:
             return command
         ahead_mm = sight.corner_mm - self.corner_at_mm
         if ahead_mm <= _ARRIVED_MM:
-            return Command(state="stop", reason="corner")
+            # One that was behind when it was first seen is left behind.
+            return Command(state="stop", reason="corner") if self._ahead else command
+        self._ahead = True
         return command.scaled(
             min(1.0, _APPROACH_PER_S * ahead_mm / max(command.forward_mm_s, 1e-9))
         )

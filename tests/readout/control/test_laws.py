@@ -73,6 +73,27 @@ def test_an_estimate_that_distrusts_itself_shows_no_line() -> None:
     assert sight_of(_edge(1.0, 5.0, flags=("weak",))).height_mm is None
     assert sight_of(_edge(1.0, 5.0, flags=("misfit",))).height_mm is not None  # curved
     assert sight_of(_edge(1.0, 85.0)).height_mm is None
+    # As the published bent cable, and as the edge of a sheet that is fitted as a cable.
+    assert sight_of(_edge(1.0, 5.0, flags=("misfit",), rms_counts=29.0)).height_mm is not None
+    assert sight_of(_edge(1.0, 5.0, flags=("misfit",), rms_counts=151.0)).height_mm is None
+
+
+@pytest.mark.parametrize("every", [10, 40])
+def test_single_frames_with_a_line_do_not_keep_a_trace_alive(every: int) -> None:
+    tracer = Tracer(LineLaw(80.0))
+    tracer(_edge(0.0, 0.0), DT_S)
+    frames = [tracer(NOTHING if n % every else _edge(0.0, 0.0), DT_S) for n in range(1, 110)]
+    assert frames[-1].reason == "lost"
+
+
+def test_a_corner_behind_the_finger_is_left_behind() -> None:
+    tracer = Tracer(LineLaw(80.0), corner_at_mm=0.0, corner_frames=1)
+    behind = _edge(0.0, 0.0, kind="corner", vertex_mm=(-5.0, 0.0), opening_deg=90.0)
+    assert tracer(behind, DT_S).state != "stop"
+    for ahead_mm in (8.0, 4.0):
+        ahead = replace(behind, vertex_mm=(ahead_mm, 0.0))
+        assert tracer(ahead, DT_S).state != "stop"
+    assert tracer(behind, DT_S).reason == "corner"
 
 
 def test_commands_stay_within_the_limits() -> None:
