@@ -2,10 +2,12 @@
 
     world = LiveTask(Task(layout, Settings("cable")), "twin://trace-cable")
     with world.open() as tip, world.shown(tip, port=8642):
+        before_s = tip.wait_latest(2.0).t
         for frame in tip.frames(timeout=2.0):
             if frame is not tip.latest():
                 continue  # a newer one is here already
-            world.command(tracer(estimator(frame.values), world.period_s))
+            world.command(tracer(estimator(frame.values), frame.t - before_s))
+            before_s = frame.t
     print(world.metrics())
 
 Frames are packets of version 2 with raw codes. They come at the rate of the task, with or without
