@@ -91,8 +91,7 @@ class URArm:
             ArmStopped: if the arm was stopped before, with the reason.
             ArmError: if a velocity or the time is no number; leave the `with` block then.
         """
-        if self._stop:
-            raise self._stop.with_traceback(None)
+        self._require_open()
         arguments.finite_fields(arguments.instance(command, Command, "command", ArmError), ArmError)
         seen_s = arguments.number(seen_s, "seen_s", error=ArmError)
         # A time in the future would keep the arm moving without any frame until then.
@@ -101,7 +100,12 @@ class URArm:
             self._thread.join()
 
     def measured(self) -> Command:
-        """Motion of the fingertip now, as reported by the arm's controller."""
+        """Motion of the fingertip now, as reported by the arm's controller.
+
+        Raises:
+            ArmStopped: if the arm was stopped: no states arrive then.
+        """
+        self._require_open()
         pose, twist = self._state
         return self.mount.command(in_tool(pose, twist))
 
@@ -109,6 +113,10 @@ class URArm:
         """Stop the arm, wait until it stands still, and disconnect. May be called repeatedly."""
         self._hang_up()
         self._thread.join()
+
+    def _require_open(self) -> None:
+        if self._stop:
+            raise self._stop.with_traceback(None)
 
     def _first_state(self) -> tuple[Any, Any]:
         assert self._process.stdout
