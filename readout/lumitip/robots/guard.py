@@ -67,7 +67,7 @@ class ArmLimits:
     rotation_rad_s: float = 1.0
     """Rotation; faster commands are slowed down (rad/s)."""
     acceleration_mm_s2: float = 500.0
-    """Acceleration and braking (mm/s²)."""
+    """Acceleration and braking (mm/s²); of a rotation the same number in mrad/s²."""
     force_n: float = 30.0
     """Largest change of the force on the tool since the arm was opened (N)."""
     travel_mm: float = 300.0
