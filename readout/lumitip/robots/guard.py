@@ -9,8 +9,9 @@ from lumitip.grid import Floats
 from lumitip.robots.mount import ArmError, Mount, rotation_of
 from lumitip.values import as_float, one_line, shown
 
-_FASTER = 1.5  # times the speed limit; measured speeds overshoot, but not by more
+_FASTER = 1.5  # times the limit; measured speeds overshoot, but not by more
 _STILL_MM_S = 20.0
+_STILL_RAD_S = 0.1
 WHY = {
     "closed": "the program closed it",
     "connection": "the connection to the arm is silent or lost",
@@ -66,7 +67,7 @@ class ArmLimits:
     rotation_rad_s: float = 1.0
     """Rotation; faster commands are slowed down (rad/s)."""
     acceleration_mm_s2: float = 500.0
-    """Acceleration and braking (mm/s²)."""
+    """Acceleration and braking (mm/s²); of a rotation the same number in mrad/s²."""
     force_n: float = 30.0
     """Largest change of the force on the tool since the arm was opened (N)."""
     travel_mm: float = 300.0
@@ -168,9 +169,14 @@ class Guard:
         force_n = float(np.linalg.norm(state.force_n - self._first.force_n))
         if not force_n <= limits.force_n:
             return "force", f"{force_n:.0f} N, {limits.force_n:g} allowed"
-        speed_mm_s = float(np.linalg.norm(state.twist[:3])) * 1000.0
-        if not speed_mm_s <= _FASTER * limits.speed_mm_s + _STILL_MM_S:
-            return "speed", f"{speed_mm_s:.0f} mm/s, {limits.speed_mm_s:g} allowed"
+        tool_mm_s = float(np.linalg.norm(state.twist[:3])) * 1000.0
+        fingertip_mm_s = self._mount.speed_of_origin_mm_s(state.pose, state.twist)
+        for speed_mm_s in (tool_mm_s, fingertip_mm_s):
+            if not speed_mm_s <= _FASTER * limits.speed_mm_s + _STILL_MM_S:
+                return "speed", f"{speed_mm_s:.0f} mm/s, {limits.speed_mm_s:g} allowed"
+        turning_rad_s = float(np.linalg.norm(state.twist[3:]))
+        if not turning_rad_s <= _FASTER * limits.rotation_rad_s + _STILL_RAD_S:
+            return "speed", f"{turning_rad_s:.1f} rad/s, {limits.rotation_rad_s:g} allowed"
         here_mm = self._mount.origin_in_base_mm(state.pose)
         travel_mm = float(np.linalg.norm(here_mm - self._began_mm))
         if not travel_mm <= limits.travel_mm:

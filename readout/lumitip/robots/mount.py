@@ -84,6 +84,11 @@ class Mount:
         origin_mm: Floats = pose[:3] * 1000.0 + rotation_of(pose) @ np.array(self.origin_mm)
         return origin_mm
 
+    def speed_of_origin_mm_s(self, pose: Floats, twist: Floats) -> float:
+        """Speed of the middle of the cells at a pose and twist in the base."""
+        arm_mm = rotation_of(pose) @ np.array(self.origin_mm)
+        return float(np.linalg.norm(twist[:3] * 1000.0 + np.cross(twist[3:], arm_mm)))
+
 
 def in_base(pose: Floats, twist: Floats) -> Floats:
     """A twist in tool axes, expressed in base axes; `(6,)`."""

@@ -24,6 +24,7 @@ from lumitip.robots.guard import ArmLimits, ArmStopped
 from lumitip.robots.mount import ArmError, Mount, in_tool
 
 _LONGEST_S = 600.0
+_AHEAD_S = 0.1  # `Frame.t` is later than its arrival by 0.05 s, or a period of a legacy device
 _UNOPENED_S = 5.0  # an arm that was not opened does not move; its process may be killed
 _SIGNALS = {-number: number.name for number in signal.Signals}
 _log = logging.getLogger(__name__)
@@ -89,19 +90,31 @@ class URArm:
 
         Raises:
             ArmStopped: if the arm was stopped before, with the reason.
-            ArmError: if a velocity or the time is no number; leave the `with` block then.
+            ArmError: if a velocity or the time is no number, or the time is in the future; leave
+                the `with` block then.
         """
-        if self._stop:
-            raise self._stop.with_traceback(None)
+        self._require_open()
         arguments.finite_fields(arguments.instance(command, Command, "command", ArmError), ArmError)
         seen_s = arguments.number(seen_s, "seen_s", error=ArmError)
-        # A time in the future would keep the arm moving without any frame until then.
-        self._say(command=asdict(command), seen_s=min(seen_s, time.monotonic()))
+        now_s = time.monotonic()
+        if seen_s > now_s + _AHEAD_S and command.state != "stop":
+            raise ArmError(
+                f"seen_s is {seen_s:.2f}, {seen_s - now_s:.2f} s in the future; at most "
+                f"{_AHEAD_S:g} s is allowed, by time.monotonic() of this computer. Pass the "
+                "frame's arrival frame.t_host, or min(frame.t, frame.t_host)"
+            )
+        # A time in the future would let a frame move the arm for longer than `stale_s`.
+        self._say(command=asdict(command), seen_s=min(seen_s, now_s))
         if command.state == "stop":
             self._thread.join()
 
     def measured(self) -> Command:
-        """Motion of the fingertip now, as reported by the arm's controller."""
+        """Motion of the fingertip now, as reported by the arm's controller.
+
+        Raises:
+            ArmStopped: if the arm was stopped: no states arrive then.
+        """
+        self._require_open()
         pose, twist = self._state
         return self.mount.command(in_tool(pose, twist))
 
@@ -109,6 +122,10 @@ class URArm:
         """Stop the arm, wait until it stands still, and disconnect. May be called repeatedly."""
         self._hang_up()
         self._thread.join()
+
+    def _require_open(self) -> None:
+        if self._stop:
+            raise self._stop.with_traceback(None)
 
     def _first_state(self) -> tuple[Any, Any]:
         assert self._process.stdout

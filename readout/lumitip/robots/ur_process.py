@@ -14,7 +14,7 @@ Lines of JSON on its input and output, from and to `lumitip.robots.ur` alone:
     out   {"warning": "…"}                     of what failed while it brakes
 
 Instead of the first state: {"missing": true} without ur_rtde, or {"failed": "…"}. The process ends
-when the arm stands, `_ENDING_S` after the stop at most.
+when the arm stands, `_ENDING_MORE_S` after the longest braking at most.
 
 `seen_s` is of `time.monotonic()`, which is one clock for all processes of a computer: Python says
 so since 3.5, on macOS since 3.10. It counts from the computer's start, by `CLOCK_MONOTONIC` on
@@ -64,7 +64,7 @@ _REFUSAL_STATES = 10
 _BRAKING_MORE_S = 0.5
 _CONNECTING_S = 30.0  # ur_rtde waits for ever where the port is open and silent
 _HANGS_S = 5.0  # no watchdog waits as long: the controller has stopped the arm by then
-_ENDING_S = 10.0  # braking takes 5 s where the limits are extreme
+_ENDING_MORE_S = 10.0  # beside braking from twice the limits; the guard stops it before
 _NOWHERE = Path(os.devnull).open("w")  # noqa: SIM115 - open as long as the process
 
 
@@ -97,7 +97,8 @@ class Driver:
         except Exception as problem:  # noqa: BLE001 - whatever goes wrong must stop the arm
             reason, detail, trace = "error", str(problem), traceback.format_exc()
         self._parent.say(stopped=reason, detail=detail, trace=trace)
-        _end_in(_ENDING_S)
+        fastest = 2.0 * self._limits.speed_mm_s / 1000.0, 2.0 * self._limits.rotation_rad_s
+        _end_in(self._braking_s(*fastest) + _ENDING_MORE_S)
         if not self._control.isConnected():
             return  # calls would wait for an answer, some for minutes: the watchdog stops the arm
         if reason == "connection":
@@ -154,10 +155,16 @@ class Driver:
     def _acceleration_m_s2(self) -> float:
         return self._limits.acceleration_mm_s2 / 1000.0
 
+    def _braking_s(self, speed_m_s: float, rotation_rad_s: float) -> float:
+        """Time to brake (s): ur_rtde's `speedl` has no limit of its own for the rotation, and the
+        controller then takes the acceleration in m/s² as that in rad/s²."""
+        return max(speed_m_s, rotation_rad_s) / self._acceleration_m_s2
+
     def _brake(self) -> None:
         """Send zero speed until the arm stands: with `speedStop` alone the watchdog would act."""
-        speed_m_s = float(np.linalg.norm(self._state().twist[:3]))
-        until_s = time.monotonic() + speed_m_s / self._acceleration_m_s2 + _BRAKING_MORE_S
+        twist = self._state().twist
+        speeds = float(np.linalg.norm(twist[:3])), float(np.linalg.norm(twist[3:]))
+        until_s = time.monotonic() + self._braking_s(*speeds) + _BRAKING_MORE_S
         while time.monotonic() < until_s and self._send(np.zeros(6)):
             if float(np.abs(self._shown().twist).max()) < _STILL:
                 return

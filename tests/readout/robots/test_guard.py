@@ -30,6 +30,7 @@ def test_an_arm_within_its_limits_goes_on() -> None:
     assert _reason(later_s=9.0, seen_s=8.95) == ""
     assert _reason(force_n=np.array([1.0, 2.0, 20.0])) == ""
     assert _reason(twist=np.array([0.16, 0, 0, 0, 0, 0])) == ""
+    assert _reason(twist=np.array([0, 0, 0, 0, 0, 1.5])) == ""
 
 
 @pytest.mark.parametrize(
@@ -44,6 +45,8 @@ def test_an_arm_within_its_limits_goes_on() -> None:
         ("force", {"force_n": np.array([1.0, 2.0, 23.0])}),
         ("force", {"force_n": np.array([np.nan, 0.0, 0.0])}),
         ("speed", {"twist": np.array([0.0, 0.2, 0, 0, 0, 0])}),
+        ("speed", {"twist": np.array([0.0, 0.0, 0, 0, 0, 1.7])}),
+        ("speed", {"twist": np.array([0.0, 0.0, 0, 0, 0, np.nan])}),
         ("travel", {"pose": np.array([0.4, 0.0, -0.01, 0, 0, 0])}),
         ("travel", {"pose": np.array([np.nan, 0.0, 0.3, 0, 0, 0])}),
         ("turn", {"pose": np.array([0.4, 0.0, 0.3, 0, 0, 2.2])}),
@@ -59,6 +62,30 @@ def test_travel_is_of_the_fingertip_not_of_the_tool() -> None:
     guard = Guard(ArmLimits(travel_mm=150.0, turn_deg=170.0), MOUNT, FIRST, 0.0)
     turned = replace(FIRST, time_s=50.01, pose=np.array([0.4, 0.0, 0.3, 2.9, 0.0, 0.0]))
     assert guard.reason(turned, 0.01, 0.0)[0] == "travel"
+
+
+def _speed(limits: ArmLimits, twist: list[float], turn: float = 0.0) -> tuple[str, str]:
+    first = replace(FIRST, pose=np.array([0.4, 0.0, 0.3, turn, 0.0, 0.0]))
+    guard = Guard(limits, MOUNT, first, 0.0)
+    return guard.reason(replace(first, time_s=50.01, twist=np.array(twist)), 0.01, 0.0)
+
+
+def test_a_rotation_faster_than_its_limit_is_a_reason_to_stop() -> None:
+    limits = ArmLimits(rotation_rad_s=0.2)
+    assert _speed(limits, [0, 0, 0, 0, 0, 0.39]) == ("", "")
+    assert _speed(limits, [0, 0, 0, 0, 0, 5.0]) == ("speed", "5.0 rad/s, 0.2 allowed")
+
+
+def test_speed_is_of_the_fingertip_too() -> None:
+    limits = ArmLimits(speed_mm_s=10.0, rotation_rad_s=2.0)
+    expected = ("speed", "200 mm/s, 10 allowed")
+    assert _speed(limits, [0, 0, 0, 0, 2.0, 0]) == expected
+    # With the tool turned by a quarter about x the fingertip is at -y of the tool centre point.
+    assert _speed(limits, [0, 0, 0, 0, 0, 2.0], np.pi / 2) == expected
+    assert _speed(limits, [0, 0, 0, 0, 2.0, 0], np.pi / 2) == ("", "")
+    # The tool goes around the fingertip, which stands still.
+    around = ArmLimits(speed_mm_s=120.0, rotation_rad_s=2.0)
+    assert _speed(around, [-0.19, 0, 0, 0, 1.9, 0]) == ("", "")
 
 
 def test_fast_commands_are_slowed_down_as_a_whole() -> None:

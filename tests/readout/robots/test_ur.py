@@ -96,7 +96,9 @@ def test_it_stops_when_no_fresh_frame_comes(peer: Peer) -> None:
 @patient
 def test_frames_that_claim_to_be_of_later_do_not_move_it_on(peer: Peer) -> None:
     with URArm(peer.host, MOUNT, ArmLimits(stale_s=0.2, watchdog_hz=2.0)) as arm:
-        arm.move(Command(forward_mm_s=30.0), time.monotonic() + 60.0)
+        arm.move(Command(forward_mm_s=30.0), time.monotonic())
+        with pytest.raises(ArmError, match="in the future"):
+            arm.move(Command(forward_mm_s=30.0), time.monotonic() + 60.0)
         assert until_stopped(arm, None) == "stale"
 
 
