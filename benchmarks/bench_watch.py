@@ -41,6 +41,7 @@ def main() -> int:
             _pages(log, 1, STARTED_S)
             for name, (edit, most_s) in EDITS.items():
                 seconds = _seconds(file, log, edit)
+                print(f"{name}: {seconds:.1f} s", flush=True)
                 goals.at_most(f"edit to checked page, {name}", seconds, most_s, "s")
     return goals.exit_code()
 
@@ -55,7 +56,10 @@ def _running(command: list[str], log: Path) -> Iterator[None]:
             yield
         finally:
             process.send_signal(signal.SIGINT)
-            process.wait(60)
+            try:
+                process.wait(60)
+            except subprocess.TimeoutExpired:
+                process.kill()
 
 
 def _seconds(file: Path, log: Path, edit: tuple[str, str, str]) -> float:
