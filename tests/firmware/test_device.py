@@ -34,9 +34,9 @@ class Variant:
 
     @property
     def defines(self) -> list[str]:
-        told = {"BITS": self.bits, "PERIOD_US": self.period_us, "LATENCY_US": self.latency_us}
-        told["AMBIENT"] = 0  # one scan a frame; two are in test_scans.py
-        return [f"-DLUMITIP_{name}={value}" for name, value in told.items()]
+        values = {"BITS": self.bits, "PERIOD_US": self.period_us, "LATENCY_US": self.latency_us}
+        values["AMBIENT"] = 0  # one scan a frame; two are in test_scans.py
+        return [f"-DLUMITIP_{name}={value}" for name, value in values.items()]
 
     def __str__(self) -> str:
         return f"{self.preset}-{self.bits}-{self.period_us}"
@@ -60,7 +60,7 @@ class Phase:
     statuses: list[Status] = field(default_factory=list)
 
 
-class Told:
+class Outcome:
     """What a whole run printed."""
 
     def __init__(self, text: str, layout: Layout, variant: Variant) -> None:
@@ -117,7 +117,7 @@ class Told:
         return codes % (1 << ADC_BITS) >> (ADC_BITS - bits)
 
     def fault(self, phase: str, fault: Fault) -> bool:
-        """Whether the last status told until the end of a phase has a fault."""
+        """Whether the last status outcome until the end of a phase has a fault."""
         names = list(self.phases)
         until = names[: names.index(phase) + 1]
         return fault in [s for name in until for s in self.phases[name].statuses][-1].faults
@@ -129,18 +129,18 @@ def numbers(packets: list[Packet]) -> list[int]:
 
 
 @pytest.fixture(scope="module", params=VARIANTS, ids=str)
-def told(
+def outcome(
     request: pytest.FixtureRequest,
     sketch: Callable[[str], Path],
     host_program: Callable[..., Path],
     run: Callable[..., Any],
-) -> Told:
+) -> Outcome:
     """What a device of each variant sends, run with sanitizers on this computer."""
     variant: Variant = request.param
     done = run(str(host_program("scenario", variant.preset, *variant.defines)))
     assert done.returncode == 0, done.stderr
     layout = Layout.load(sketch(variant.preset).parent / "layout.json")
-    return Told(done.stdout, layout, variant)
+    return Outcome(done.stdout, layout, variant)
 
 
 @pytest.mark.parametrize("variant", VARIANTS, ids=str)
@@ -152,14 +152,14 @@ def test_a_cortex_m4_sends_the_same(
     run: Callable[..., Any],
 ) -> None:
     sent = arm_output("scenario", variant.preset, *variant.defines)
-    told = Told(sent, Layout.load(sketch(variant.preset).parent / "layout.json"), variant)
-    assert len(numbers(told.packets("mtu_247"))) >= FRAMES - 8
+    outcome = Outcome(sent, Layout.load(sketch(variant.preset).parent / "layout.json"), variant)
+    assert len(numbers(outcome.packets("mtu_247"))) >= FRAMES - 8
     here = run(str(host_program("scenario", variant.preset, *variant.defines))).stdout
     assert sent == here
 
 
-def test_serial_carries_every_frame_through_the_wrap_of_number_and_time(told: Told) -> None:
-    packets = told.on_serial("serial", "mtu_23", "just_enough", "mtu_247", "not_asked")
+def test_serial_carries_every_frame_through_the_wrap_of_number_and_time(outcome: Outcome) -> None:
+    packets = outcome.on_serial("serial", "mtu_23", "just_enough", "mtu_247", "not_asked")
     found = numbers(packets)
     assert found == [(65520 + i) % 65536 for i in range(len(found))]
     assert len(found) > 5 * FRAMES - 17
@@ -167,93 +167,96 @@ def test_serial_carries_every_frame_through_the_wrap_of_number_and_time(told: To
     assert min(times) < times[0] < max(times)  # the clock wrapped
 
 
-def test_batches_are_as_large_as_mtu_and_latency_allow(told: Told) -> None:
-    cells, v = len(told.layout), told.variant
+def test_batches_are_as_large_as_mtu_and_latency_allow(outcome: Outcome) -> None:
+    cells, v = len(outcome.layout), outcome.variant
     patient = max(v.latency_us // v.period_us, 1)
     for phase, mtu in (("just_enough", needed_mtu(cells, v.bits)), ("mtu_247", 247)):
-        packets = told.packets(phase)[1:]  # the first may have begun at the MTU before
+        packets = outcome.packets(phase)[1:]  # the first may have begun at the MTU before
         assert packets
         assert {p.frames for p in packets} == {min(patient, largest_batch(mtu, cells, v.bits))}
 
 
-def test_nothing_is_ever_longer_than_the_mtu(told: Told) -> None:
-    mtus = {"mtu_23": 23, "just_enough": needed_mtu(len(told.layout), told.variant.bits)}
-    for name, phase in told.phases.items():
+def test_nothing_is_ever_longer_than_the_mtu(outcome: Outcome) -> None:
+    mtus = {"mtu_23": 23, "just_enough": needed_mtu(len(outcome.layout), outcome.variant.bits)}
+    for name, phase in outcome.phases.items():
         room = mtus.get(name, 247) - 3
         assert all(len(data) <= room for data in phase.notified)
 
 
-def test_a_frame_that_does_not_fit_is_not_sent_and_the_status_says_so(told: Told) -> None:
-    assert not told.fault("serial", Fault.MTU_TOO_SMALL)
-    assert told.phases["mtu_23"].notified == []
-    status = told.phases["mtu_23"].statuses[-1]
+def test_a_frame_that_does_not_fit_is_not_sent_and_the_status_says_so(outcome: Outcome) -> None:
+    assert not outcome.fault("serial", Fault.MTU_TOO_SMALL)
+    assert outcome.phases["mtu_23"].notified == []
+    status = outcome.phases["mtu_23"].statuses[-1]
     assert Fault.MTU_TOO_SMALL in status.faults
-    assert (status.mtu, status.needed_mtu) == (23, needed_mtu(len(told.layout), told.variant.bits))
-    assert not told.fault("just_enough", Fault.MTU_TOO_SMALL)
+    needed = needed_mtu(len(outcome.layout), outcome.variant.bits)
+    assert (status.mtu, status.needed_mtu) == (23, needed)
+    assert not outcome.fault("just_enough", Fault.MTU_TOO_SMALL)
 
 
-def test_nobody_is_told_who_did_not_ask(told: Told) -> None:
-    assert told.phases["not_asked"].notified == []
-    assert told.phases["serial"].notified == []
+def test_nobody_gets_frames_who_did_not_ask(outcome: Outcome) -> None:
+    assert outcome.phases["not_asked"].notified == []
+    assert outcome.phases["serial"].notified == []
 
 
-def test_a_refused_notification_is_told(told: Told) -> None:
-    assert not told.fault("not_asked", Fault.NOTIFY_FAILED)
-    assert told.fault("refused", Fault.NOTIFY_FAILED)
-    assert told.phases["refused"].notified == []
+def test_a_refused_notification_is_a_fault(outcome: Outcome) -> None:
+    assert not outcome.fault("not_asked", Fault.NOTIFY_FAILED)
+    assert outcome.fault("refused", Fault.NOTIFY_FAILED)
+    assert outcome.phases["refused"].notified == []
 
 
-def test_a_serial_line_that_nobody_reads_loses_whole_packets_only(told: Told) -> None:
-    assert not told.fault("refused", Fault.SERIAL_FULL)
-    assert told.fault("serial_stuck", Fault.SERIAL_FULL)
-    assert told.phases["serial_stuck"].serial == b""
+def test_a_serial_line_that_nobody_reads_loses_whole_packets_only(outcome: Outcome) -> None:
+    assert not outcome.fault("refused", Fault.SERIAL_FULL)
+    assert outcome.fault("serial_stuck", Fault.SERIAL_FULL)
+    assert outcome.phases["serial_stuck"].serial == b""
     before = ("serial", "mtu_23", "just_enough", "mtu_247", "not_asked", "refused")
-    sent = b"".join(told.phases[name].serial for name in (*before, "serial_slow"))
+    sent = b"".join(outcome.phases[name].serial for name in (*before, "serial_slow"))
     whole = sent[: sent.rindex(b"\0") + 1]
-    decoder = StreamDecoder(len(told.layout))
-    told.check(decoder.feed(whole))
+    decoder = StreamDecoder(len(outcome.layout))
+    outcome.check(decoder.feed(whole))
     assert sum(decoder.dropped.values()) == 0
-    assert told.phases["serial_closed"].serial == b""
+    assert outcome.phases["serial_closed"].serial == b""
 
 
-def test_a_serial_line_opened_again_begins_with_a_whole_packet(told: Told) -> None:
-    assert told.phases["serial_cut"].serial
-    assert len(told.on_serial("serial_reopened")) >= 1
+def test_a_serial_line_opened_again_begins_with_a_whole_packet(outcome: Outcome) -> None:
+    assert outcome.phases["serial_cut"].serial
+    assert len(outcome.on_serial("serial_reopened")) >= 1
 
 
-def test_a_late_scan_is_told_and_what_it_missed_counts_as_lost(told: Told) -> None:
-    assert not told.fault("serial_closed", Fault.LATE)
-    assert told.fault("late", Fault.LATE)
-    packets = told.packets("serial_closed") + told.packets("late") + told.packets("jitter")
+def test_a_late_scan_is_a_fault_and_what_it_missed_counts_as_lost(outcome: Outcome) -> None:
+    assert not outcome.fault("serial_closed", Fault.LATE)
+    assert outcome.fault("late", Fault.LATE)
+    packets = outcome.packets("serial_closed") + outcome.packets("late") + outcome.packets("jitter")
     found = numbers(packets)
     (missed,) = (step - 1 for step in np.diff(found) if step != 1)
     assert missed == MISSED
 
 
-def test_the_status_tells_the_design_and_the_watchdog(told: Told) -> None:
-    status = told.phases["begin"].statuses[0]
-    assert told.layout.design_hash.startswith(status.design_hash)
-    assert (status.cells, status.mtu) == (len(told.layout), 0)
+def test_the_status_tells_the_design_and_the_watchdog(outcome: Outcome) -> None:
+    status = outcome.phases["begin"].statuses[0]
+    assert outcome.layout.design_hash.startswith(status.design_hash)
+    assert (status.cells, status.mtu) == (len(outcome.layout), 0)
     assert status.faults == Fault.WATCHDOG
 
 
-def test_legacy_frames_are_the_highest_8_bits_in_cell_order(told: Told) -> None:
-    cells, frame = len(told.layout), 65520
-    for name, phase in told.phases.items():
+def test_legacy_frames_are_the_highest_8_bits_in_cell_order(outcome: Outcome) -> None:
+    cells, frame = len(outcome.layout), 65520
+    for name, phase in outcome.phases.items():
         frame += MISSED if name == "late" else 0
         for data in phase.legacy:
             values = decode_legacy(data, cells)
-            assert np.array_equal(values, told.measured(frame, 8))
+            assert np.array_equal(values, outcome.measured(frame, 8))
             frame += 1
     assert frame == 65520 + ALL_FRAMES + MISSED
 
 
-def test_one_select_line_changes_for_each_input_and_each_settles(told: Told) -> None:
-    channels = 16 if told.layout.channel.max() > 7 else 8
+def test_one_select_line_changes_for_each_input_and_each_settles(outcome: Outcome) -> None:
+    channels = 16 if outcome.layout.channel.max() > 7 else 8
     scans = 65520 + ALL_FRAMES
     lines = channels.bit_length() - 1
-    assert told.unsettled == 0
-    assert told.selects == lines + scans * channels - 1  # the first input is selected at the start
+    assert outcome.unsettled == 0
+    assert (
+        outcome.selects == lines + scans * channels - 1
+    )  # the first input is selected at the start
 
 
 def test_nothing_is_allocated(

@@ -6,10 +6,10 @@ counter-clockwise from +x. A line has the direction `angle_deg` and the signed d
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lumitip.estimation.fit import Fit
 from lumitip.estimation.shapes import Shape
@@ -97,10 +97,16 @@ class Estimate:
         return float(np.sqrt(max(self.covariance[at, at], 0.0)))
 
 
-def without_contact(kind: str, left_out: Sequence[int] = ()) -> Estimate:
-    """The estimate of a frame without contrast, but for cells that were left out."""
+def contrast(values: Floats) -> float:
+    """Between the lightest value and the darkest but one, of two or more: a single cell may be dead
+    or dirty, and an empty grasp with it is no contact."""
+    return float(values.max() - np.partition(values, 1)[1])
+
+
+def without_contact(kind: str, usable: NDArray[np.bool_]) -> Estimate:
+    """The estimate of a frame without contrast in its usable cells, shape `(cells,)`."""
     nan = float("nan")
-    lost = tuple(left_out)
+    lost = tuple(np.flatnonzero(~usable).tolist())
     return Estimate(kind, nan, nan, nan, nan, nan, np.empty((0, 0)), nan, left_out=lost)
 
 

@@ -13,6 +13,7 @@ from lumitip.estimation.estimate import (
     KINDS,
     MISFIT_COUNTS,
     Estimate,
+    contrast,
     covariance,
     report,
     rms_counts,
@@ -136,10 +137,9 @@ class PoseEstimator:
         read = frame_values(values, self.layout)
         usable = usable_cells(read)
         known = read[usable]
-        if known.size < LEAST_CELLS or not _contrast(known) >= MIN_CONTRAST:
+        if known.size < LEAST_CELLS or not contrast(known) >= MIN_CONTRAST:
             self._last = None
-            left_out = np.flatnonzero(~usable).tolist()
-            return without_contact("covered" if is_covered(known) else "none", left_out)
+            return without_contact("covered" if is_covered(known) else "none", usable)
         frame = self.frame(read, usable)
         name, found = self._found(frame, kind)
         shape = self._search.shape(name)
@@ -272,12 +272,6 @@ class _Last:
     """Cells that were left out although they had a value."""
     light: Floats
     """What each cell saw: a dead one sees the same in every frame."""
-
-
-def _contrast(values: NDArray[np.float64]) -> float:
-    """Between the lightest cell and the darkest but one: a single cell may be dead or dirty, and an
-    empty grasp with it is no contact."""
-    return float(values.max() - np.partition(values, 1)[1])
 
 
 def _known(kind: str) -> None:

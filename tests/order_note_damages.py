@@ -1,0 +1,109 @@
+"""Damages of the notes in a zip that is sent to a PCB fab, and `edit`, which makes them."""
+
+import re
+from collections.abc import Callable
+
+from order_copper_damages import Files
+
+Damage = Callable[[Files], None]
+
+
+def edit(files: Files, ending: str, pattern: bytes, put: bytes) -> None:
+    (name,) = (n for n in files if n.endswith(ending))
+    files[name], count = re.subn(pattern, put, files[name], count=1)
+    assert count == 1
+
+
+def note_missing(files: Files) -> None:
+    del files["receiver_assembly.txt"]
+
+
+def note_of_the_mark(files: Files) -> None:
+    edit(files, "assembly.txt", b"pad 1 is the collector", b"pad 1 is the emitter")
+
+
+def note_too_sure(files: Files) -> None:
+    edit(files, "assembly.txt", b"collector is inferred", b"collector is certain")
+
+
+def note_of_a_place(files: Files) -> None:
+    edit(files, "assembly.txt", rb"(Q5  collector \S+ )\S+", rb"\g<1>1.000")
+
+
+def note_without_a_figure(files: Files) -> None:
+    edit(files, "assembly.txt", rb"(Q5  collector \S+ )\S+", rb"\g<1>nan")
+
+
+def note_without_a_part(files: Files) -> None:
+    edit(files, "assembly.txt", rb"Q5  .*\n", b"")
+
+
+def note_of_an_assumed_rotation(files: Files) -> None:
+    edit(files, "assembly.txt", b"\n\n", b"\n\nROTATION ASSUMED: U1. Compare.\n\n")
+
+
+def thickness_of_the_fabrication_note(files: Files) -> None:
+    edit(files, "fabrication.txt", b"Thickness: 1.6 mm", b"Thickness: 1 mm")
+
+
+def size_of_the_fabrication_note(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"Size: \S+", b"Size: 40.00")
+
+
+def track_of_the_fabrication_note(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"Narrowest track: \S+", b"Narrowest track: 0.25")
+
+
+def drill_of_the_fabrication_note(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"Smallest drill: \S+", b"Smallest drill: 0.4")
+
+
+def green_board(files: Files) -> None:
+    edit(files, "fabrication.txt", b"matte black, on both", b"green, on both")
+
+
+def thin_copper(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"Copper: \S+", b"Copper: 18")
+
+
+def bare_copper(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"Surface: .*", b"Surface: none")
+
+
+def black_letters(files: Files) -> None:
+    edit(files, "fabrication.txt", b"Silkscreen: white", b"Silkscreen: black")
+
+
+def no_stop_line(files: Files) -> None:
+    del files["STOP_READ_FIRST.txt"]
+
+
+def stop_line_of_other_parts(files: Files) -> None:
+    edit(files, "STOP_READ_FIRST.txt", rb"Q1 to Q\d+", b"Q1 to Q2")
+
+
+def stop_line_names_others_below(files: Files) -> None:
+    edit(files, "STOP_READ_FIRST.txt", rb"\nQ1 to Q\d+", b"\nQ1 to Q2")
+
+
+NOTE_DAMAGES: dict[Damage, set[str]] = {
+    note_missing: {"readable"},
+    note_of_the_mark: {"note"},
+    note_too_sure: {"note"},
+    note_of_a_place: {"note"},
+    note_without_a_figure: {"note"},
+    note_without_a_part: {"note"},
+    note_of_an_assumed_rotation: {"assumed"},
+    thickness_of_the_fabrication_note: {"fabrication"},
+    size_of_the_fabrication_note: {"fabrication"},
+    track_of_the_fabrication_note: {"fabrication"},
+    drill_of_the_fabrication_note: {"fabrication"},
+    green_board: {"fabrication"},
+    thin_copper: {"fabrication"},
+    bare_copper: {"fabrication"},
+    black_letters: {"fabrication"},
+    no_stop_line: {"stop"},
+    stop_line_of_other_parts: {"stop"},
+    stop_line_names_others_below: {"stop"},
+}
+"""With the checks that see them."""
