@@ -29,13 +29,19 @@ SCENES = {
 PANEL = "lumitip.panels.get(1)"
 
 
+def tables_ready(page: Page) -> None:
+    """Wait for the tables of the estimate: half a minute where other work is on."""
+    until(page, f"{PANEL}.status?.estimates.state === 'ready'", timeout_s=120.0)
+
+
 def shown(
     page: Page, serve: Serve, still: StillFinger, layout: Layout, thing: Thing
 ) -> tuple[Estimate, Finger]:
     """The page of an object that stands still, once the estimate is there."""
     finger = still(layout, np.rint(255.0 - Twin(layout).values(thing)))
     opened(page, serve(finger))
-    until(page, f"{PANEL}.estimate && {PANEL}.status?.estimates.state === 'ready'")
+    until(page, f"{PANEL}.estimate")
+    tables_ready(page)
     return PoseEstimator(layout)(finger.tip.read().values), finger
 
 
@@ -88,6 +94,7 @@ def test_misfit_is_said_in_words_without_moving_the_page(
     codes = np.zeros(len(layout))
     codes[::3] = 250
     opened(page, serve(still(layout, codes), still(layout, np.zeros(len(layout)))))
+    tables_ready(page)
     words = page.locator(".words").first
     expect(words).to_contain_text("misfit: no edge, cable or corner explains these cells")
     assert words.evaluate("e => e.scrollHeight <= e.clientHeight")
@@ -113,6 +120,7 @@ def test_a_doubted_estimate_says_both(
     codes = np.zeros(len(layout))
     codes[::3] = 250
     opened(page, serve(still(layout, codes)))
+    tables_ready(page)
     text = re.compile(r"^misfit: no edge, .*; the error may be larger.*\. Not tared yet$")
     expect(page.locator(".words")).to_have_text(text)
 
