@@ -106,11 +106,10 @@ class Arm:
             self.end_program("watchdog")
         moved = bool(self.speed.any())
         change = self.target - self.speed
-        # Turning takes on speed as a point a metre from its axis would, four times as fast.
-        for axes, times in ((slice(3), 1.0), (slice(3, 6), 4.0)):
+        # UR's manual of `speedl`: without aRot the same number is that of the rotation in rad/s².
+        for axes in (slice(3), slice(3, 6)):
             size = float(np.linalg.norm(change[axes]))
-            most = times * self.acceleration * STEP_S
-            change[axes] *= min(1.0, most / size) if size else 1.0
+            change[axes] *= min(1.0, self.acceleration * STEP_S / size) if size else 1.0
         self.speed += change
         self.place += self.speed[:3] * STEP_S
         self.turn = Rotation.from_rotvec(self.speed[3:] * STEP_S) * self.turn

@@ -46,6 +46,7 @@ _ALLOWED: dict[str, tuple[float, float, str]] = {
     "speed_mm_s": (0.0, 250.0, "the reduced speed of ISO 10218-1"),
     "rotation_rad_s": (0.0, 2.0, "a third of a turn in a second"),
     "acceleration_mm_s2": (50.0, 2000.0, "below 50 the stopping distance is long"),
+    "rotation_rad_s2": (0.5, 10.0, "below 0.5 the arm turns on for long while it stops"),
     "force_n": (0.0, 100.0, "below the 140 N that ISO/TS 15066 allows on a hand"),
     "travel_mm": (0.0, 1000.0, "the reach of the smaller arms"),
     "turn_deg": (0.0, 170.0, "the finger's cable winds up"),
@@ -67,7 +68,9 @@ class ArmLimits:
     rotation_rad_s: float = 1.0
     """Rotation; faster commands are slowed down (rad/s)."""
     acceleration_mm_s2: float = 500.0
-    """Acceleration and braking (mm/s²); of a rotation the same number in mrad/s²."""
+    """Acceleration and braking of fingertip and tool centre point (mm/s²)."""
+    rotation_rad_s2: float = 3.0
+    """Acceleration and braking of the rotation (rad/s²)."""
     force_n: float = 30.0
     """Largest change of the force on the tool since the arm was opened (N)."""
     travel_mm: float = 300.0
@@ -91,6 +94,12 @@ class ArmLimits:
             object.__setattr__(self, field.name, number)
         if faults:
             raise ArmError("; ".join(faults))
+
+    def braking_s(self, times: float) -> float:
+        """Time to brake from a multiple of both speeds (s)."""
+        return times * max(
+            self.speed_mm_s / self.acceleration_mm_s2, self.rotation_rad_s / self.rotation_rad_s2
+        )
 
     def share(self, speed_mm_s: float, rotation_rad_s: float) -> float:
         """Factor, at most 1, that brings both speeds within the limits."""

@@ -43,7 +43,8 @@ from lumitip.control import Command
 from lumitip.errors import MissingExtra
 from lumitip.grid import Floats
 from lumitip.robots.guard import ArmLimits, ArmState, Guard
-from lumitip.robots.mount import ArmError, Mount, in_base
+from lumitip.robots.mount import ArmError, Mount, in_base, in_tool
+from lumitip.robots.ramp import Ramp
 from lumitip.robots.ur_parent import Parent
 
 RATE_HZ = 125.0
@@ -60,11 +61,13 @@ _VARIABLES = [
 ]
 _FIRST_STATE_S = 2.0
 _STILL = 1e-3  # m/s or rad/s
+_LONGEST_STEP_S = 2.0 / RATE_HZ  # of the ramp: a process that stood still does not jump
+_FASTEST = 2.0  # times the limits of speed; the guard stops an arm before
 _REFUSAL_STATES = 10
 _BRAKING_MORE_S = 0.5
 _CONNECTING_S = 30.0  # ur_rtde waits for ever where the port is open and silent
 _HANGS_S = 5.0  # no watchdog waits as long: the controller has stopped the arm by then
-_ENDING_MORE_S = 10.0  # beside braking from twice the limits; the guard stops it before
+_ENDING_MORE_S = 10.0  # beside the braking
 _NOWHERE = Path(os.devnull).open("w")  # noqa: SIM115 - open as long as the process
 
 
@@ -77,6 +80,7 @@ class Driver:
     ) -> None:
         """Connect, send the controller its script and set the watchdog; nothing moves yet."""
         self._parent, self._mount, self._limits = parent, mount, limits
+        self._ramp, self._sent_s = Ramp(limits, mount), -math.inf
         self._control, self._receive = _connected(host, timeout_s)
         _open_nothing_more()
         try:
@@ -97,15 +101,14 @@ class Driver:
         except Exception as problem:  # noqa: BLE001 - whatever goes wrong must stop the arm
             reason, detail, trace = "error", str(problem), traceback.format_exc()
         self._parent.say(stopped=reason, detail=detail, trace=trace)
-        fastest = 2.0 * self._limits.speed_mm_s / 1000.0, 2.0 * self._limits.rotation_rad_s
-        _end_in(self._braking_s(*fastest) + _ENDING_MORE_S)
+        _end_in(self._limits.braking_s(_FASTEST) + _ENDING_MORE_S)
         if not self._control.isConnected():
             return  # calls would wait for an answer, some for minutes: the watchdog stops the arm
         if reason == "connection":
-            self._try(self._send, np.zeros(6))
+            self._try(self._send_at_once, np.zeros(6))
             return
         self._try(self._brake)
-        self._try(self._control.speedStop, self._acceleration_m_s2)
+        self._try(self._control.speedStop, self._acceleration)
         self._try(self._control.stopScript)
         self._leave()
 
@@ -144,29 +147,35 @@ class Driver:
         fingertip_mm_s = math.hypot(command.forward_mm_s, command.lateral_mm_s)
         tool_mm_s = float(np.linalg.norm(twist[:3])) * 1000.0
         twist *= self._limits.share(max(fingertip_mm_s, tool_mm_s), abs(command.rotation_rad_s))
-        return self._send(in_base(state.pose, twist))
+        return self._send(twist, state.pose)
 
-    def _send(self, twist: Floats) -> bool:
+    def _send(self, wanted: Floats, pose: Floats) -> bool:
+        """Send the next step towards a twist in the tool frame; whether the controller took it."""
+        now_s = time.monotonic()
+        twist = self._ramp.toward(wanted, min(now_s - self._sent_s, _LONGEST_STEP_S))
+        self._sent_s = now_s
+        return self._send_at_once(in_base(pose, twist))
+
+    def _send_at_once(self, twist: Floats) -> bool:
         """Send a twist in the base; whether the controller took it."""
-        speed = twist.tolist()
-        return bool(self._control.speedL(speed, self._acceleration_m_s2, 1.0 / RATE_HZ))
+        return bool(self._control.speedL(twist.tolist(), self._acceleration, 1.0 / RATE_HZ))
 
     @property
-    def _acceleration_m_s2(self) -> float:
-        return self._limits.acceleration_mm_s2 / 1000.0
-
-    def _braking_s(self, speed_m_s: float, rotation_rad_s: float) -> float:
-        """Time to brake (s): ur_rtde's `speedl` has no limit of its own for the rotation, and the
-        controller then takes the acceleration in m/s² as that in rad/s²."""
-        return max(speed_m_s, rotation_rad_s) / self._acceleration_m_s2
+    def _acceleration(self) -> float:
+        """For `speedl`, which takes one number for m/s² and rad/s²: the larger one. The ramp keeps
+        each within its own, if the controller follows it."""
+        return max(self._limits.acceleration_mm_s2 / 1000.0, self._limits.rotation_rad_s2)
 
     def _brake(self) -> None:
-        """Send zero speed until the arm stands: with `speedStop` alone the watchdog would act."""
-        twist = self._state().twist
-        speeds = float(np.linalg.norm(twist[:3])), float(np.linalg.norm(twist[3:]))
-        until_s = time.monotonic() + self._braking_s(*speeds) + _BRAKING_MORE_S
-        while time.monotonic() < until_s and self._send(np.zeros(6)):
-            if float(np.abs(self._shown().twist).max()) < _STILL:
+        """Send ever slower speeds until the arm stands: with `speedStop` alone the watchdog would
+        act."""
+        state = self._state()
+        measured_s = self._ramp.seconds_of(in_tool(state.pose, state.twist))
+        needed_s = max(measured_s, self._ramp.seconds_of(self._ramp.twist))
+        until_s = time.monotonic() + needed_s + _BRAKING_MORE_S
+        while time.monotonic() < until_s and self._send(np.zeros(6), state.pose):
+            state = self._shown()
+            if not self._ramp.twist.any() and float(np.abs(state.twist).max()) < _STILL:
                 return
             time.sleep(1.0 / RATE_HZ)
 
