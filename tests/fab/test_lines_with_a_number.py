@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from lumitip_fab.boards.fab.order import bom_rows
+from lumitip_fab.boards.fab.order import assembled, bom_rows
 from lumitip_fab.boards.placement import place
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive import derive
@@ -29,6 +29,6 @@ def test_every_line_has_a_number(
 ) -> None:
     design = derive(vary(inputs[preset], {"emitter.led": led}))
     boards = (*design.fingers, *design.auxiliary_boards)
-    rows = [row for board in boards for row in bom_rows(place(design, board))]
+    rows = [row for board in boards for row in bom_rows(assembled(place(design, board)))]
     assert len(rows) > 10
     assert {row["part"] for row in rows if not row["lcsc"]} == set()

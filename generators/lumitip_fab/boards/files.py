@@ -2,7 +2,7 @@
 
 from lumitip_fab.boards.courtyards import with_courtyards
 from lumitip_fab.boards.fab.notes import assembly_note, fabrication_note, stop_note
-from lumitip_fab.boards.fab.order import bom_rows, layers_of, order_files
+from lumitip_fab.boards.fab.order import assembled, bom_rows, by_hand, layers_of, order_files
 from lumitip_fab.boards.fab.picture import picture_files
 from lumitip_fab.boards.kicad.project import project_files
 from lumitip_fab.boards.kicad.schematic import schematic_files
@@ -60,7 +60,10 @@ def model_files(design: Design, model: BoardModel) -> tuple[Artefact, ...]:
     # Cells are in the sensor frame of their finger, and with them the whole board.
     frame = "sensor" if board.cells else "auxiliary"
     to_frame = board_page_to_sensor if board.cells else board_page_to_auxiliary
-    facts = {"parts": list(bom_rows(board))}
+    facts = {
+        "parts": list(bom_rows(assembled(board))),
+        "by_hand": list(bom_rows(by_hand(board))),
+    }
     return tuple(
         Artefact(f"boards/{board.name}/{path}", data, to_frame(design.stack), frame, facts)
         if path.endswith(".kicad_pcb")

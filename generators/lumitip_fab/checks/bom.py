@@ -1,4 +1,4 @@
-"""`bom.csv` against the boards' lists, the printed parts, the casting notes, the cables, and its
+"""`bom.csv` against the boards, the printed parts, the casting notes, the cables, and its
 own sums; and how many lines of the boards' lists have numbers to order by."""
 
 import math
@@ -13,6 +13,7 @@ import numpy as np
 from lumitip_fab.checks.board_read import names_of
 from lumitip_fab.checks.bom_numbers import measure_numbers
 from lumitip_fab.checks.cables import read_list
+from lumitip_fab.checks.readers.kicad_board import read_board
 from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.readers.vertices import corners_mm
 from lumitip_fab.checks.result import Measurement, count, unreadable
@@ -22,6 +23,7 @@ from lumitip_fab.errors import OutputError
 
 READS = (
     "bom.csv",
+    "boards/*/*.kicad_pcb",
     "boards/*/order/*_bom.csv",
     "backing/*.stl",
     "interface/*.stl",
@@ -141,27 +143,14 @@ Part = tuple[str, str]
 
 
 def _parts(outputs: Path, design: Design) -> Counter[Part]:
-    """Quantity of each part, from the list for a PCB fab that includes all three; without makers
-    where no list has them.
+    """Quantity of each part on the boards' files, those that are soldered on by hand too.
 
     Raises:
-        OutputError: if no list has part and quantity, or one cannot be read.
+        OutputError: if one cannot be read.
     """
-    fabs = [fab for fab in design.fabs if {"part", "quantity"} <= {f for _, f in fab.bom}]
-    fab = max(fabs, key=lambda f: "manufacturer" in {field for _, field in f.bom}, default=None)
-    if fab is None:
-        raise OutputError("no PCB fab's list has order numbers and quantities")
-    heading = {field: head for head, field in fab.bom}
-    found: Counter[Part] = Counter()
-    for name in names_of(design):
-        path = outputs / f"boards/{name}/order/{fab.name}_{name}_bom.csv"
-        try:
-            for row in table(path.read_text(encoding="utf-8")):
-                part = row.get(heading.get("manufacturer", ""), ""), row[heading["part"]]
-                found[part] += int(row[heading["quantity"]])
-        except (OSError, ValueError, KeyError) as error:
-            raise OutputError(f"{path}: cannot be read: {error!r:.120}") from error
-    return found
+    boards = [read_board(outputs / f"boards/{n}/{n}.kicad_pcb") for n in names_of(design)]
+    fields = [dict(part.fields) for board in boards for part in board.parts if part.bought]
+    return Counter((f.get("Manufacturer", ""), f.get("MPN", "")) for f in fields)
 
 
 def _grams(outputs: Path, design: Design) -> dict[str, float]:
@@ -194,21 +183,12 @@ def _wrong_parts(rows: tuple[Row, ...], parts: Counter[Part], design: Design) ->
         if row.group == "electronics":
             counts[row.maker, row.part] += round(row.quantity)
     soldered = any(d.kind == "module" for c in design.auxiliary_boards for d in c.components)
-    if not any(maker for maker, _ in parts):
-        counts = _without_makers(counts)
     wanted = parts + Counter({} if soldered else {("", design.controller.title): 1})
     return [
         f"{' '.join(part)}: {counts[part]}, not {wanted[part]}"
         for part in sorted({*counts, *wanted})
         if counts[part] != wanted[part]
     ]
-
-
-def _without_makers(counts: Counter[Part]) -> Counter[Part]:
-    found: Counter[Part] = Counter()
-    for (_, part), number in counts.items():
-        found["", part] += number
-    return found
 
 
 def _prints(rows: tuple[Row, ...], grams: dict[str, float]) -> Measurement:

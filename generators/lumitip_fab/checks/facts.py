@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from lumitip_fab.checks.readers.kicad_board import Part, read_board
 from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.readers.vertices import corners_mm
 from lumitip_fab.design import Design
@@ -112,7 +113,7 @@ def _same(value: Any, text: str) -> bool:
 
 
 def _parts(outputs: Path, path: str, facts: Facts, design: Design) -> Iterator[str]:
-    """Of a board: the lines of the tables that it is ordered by."""
+    """Of a board: the lines of its tables for a PCB fab, and the numbers of all its parts."""
     board = Path(path).stem
     for fab in design.fabs:
         tables = outputs / f"boards/{board}/order/{fab.name}_{board}_bom.csv"
@@ -120,6 +121,18 @@ def _parts(outputs: Path, path: str, facts: Facts, design: Design) -> Iterator[s
         for part, row in zip(facts["parts"], rows, strict=True):
             other = [field for head, field in fab.bom if field in part and part[field] != row[head]]
             yield from (f"{field} of {part['refs']:.20}" for field in other)
+    of_facts = {
+        ref: (row["manufacturer"], row["part"])
+        for row in (*facts["parts"], *facts["by_hand"])
+        for ref in row["refs"].split(",")
+    }
+    of_board = {p.ref: _number(p) for p in read_board(outputs / path).parts if p.bought}
+    yield from (f"part of {ref}" for ref, _ in sorted({*of_facts.items()} ^ {*of_board.items()}))
+
+
+def _number(part: Part) -> tuple[str, str]:
+    fields = dict(part.fields)
+    return fields.get("Manufacturer", ""), fields.get("MPN", "")
 
 
 def _masses(outputs: Path, path: str, facts: Facts, design: Design) -> Iterator[str]:

@@ -43,16 +43,20 @@ def electronics(design: Design, files: Files) -> Iterator[Bought]:
     """Parts of all boards, alike ones together, the controller, bare boards, and placing."""
     purchase = design.purchase
     found: dict[tuple[str, str, str], dict[str, int]] = {}
+    placed = 0
     for path in files.like("boards/*/*.kicad_pcb"):
         board = path.split("/")[1]
         if "parts" not in files.facts(path):
             continue  # a panel, whose parts are those of its board
-        for row in files.facts(path)["parts"]:
+        facts = files.facts(path)
+        placed += sum(int(row["quantity"]) for row in facts["parts"])
+        for row in (*facts["parts"], *facts["by_hand"]):
             ref = row["refs"].split(",")[0]
             letters, own = ref.rstrip("0123456789"), _ON_BOARD.get(board, {})
             kind = own.get(ref) or own.get(letters) or _KINDS[letters]
             key = f"{kind} {row['value']}", row["manufacturer"], row["part"]
-            found.setdefault(key, {})[board] = int(row["quantity"])
+            place = f"{board}, soldered on by hand" if row in facts["by_hand"] else board
+            found.setdefault(key, {})[place] = int(row["quantity"])
     for (item, maker, part), where in sorted(found.items()):
         each = purchase.part_each(part)
         boards = ", ".join(f"{count} on {name}" for name, count in where.items())
@@ -64,8 +68,7 @@ def electronics(design: Design, files: Files) -> Iterator[Bought]:
         each = purchase.bare_board_each(box)
         size = f"{box.width_mm:g} x {box.length_mm:g} mm"
         yield Bought("boards", f"{name} board", "", size, "bare", 1, each, pack="bare board")
-    placed = sum(sum(where.values()) for where in found.values())
-    item, where_text = "placing and soldering", "parts on all boards"
+    item, where_text = "placing and soldering", "parts that a PCB fab mounts"
     yield Bought("boards", item, "", "", where_text, placed, purchase.placing_each)
 
 

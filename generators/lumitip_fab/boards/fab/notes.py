@@ -2,7 +2,13 @@
 
 from collections.abc import Iterator
 
-from lumitip_fab.boards.fab.order import assembled, bom_rows, bought, turned_by_assumption
+from lumitip_fab.boards.fab.order import (
+    assembled,
+    bom_rows,
+    bought,
+    by_hand,
+    turned_by_assumption,
+)
 from lumitip_fab.boards.model import BoardModel, Placement
 from lumitip_fab.boards.placed import pad_at, placed_pads
 from lumitip_fab.design import Fab, Flexible, Led, Panel, Photodetector
@@ -138,7 +144,7 @@ def _behind(board: Placement) -> Iterator[str]:
 
 def _by_hand(board: Placement) -> Iterator[str]:
     """Parts of the board that the PCB fab does not mount."""
-    parts = [f"{p.ref} ({p.manufacturer} {p.part})" for p in bought(board) if p.hand_soldered]
+    parts = [f"{p.ref} ({p.manufacturer} {p.part})" for p in by_hand(board)]
     if parts:
         yield passage(_TEXTS, "by_hand").format(parts=", ".join(parts))
         yield ""
@@ -157,7 +163,7 @@ def _ordering(board: Placement, fab: Fab) -> Iterator[str]:
         yield fab.remark
         yield ""
     if "lcsc" in (field for _, field in fab.bom):
-        unknown = [row["part"] for row in bom_rows(board) if not row["lcsc"]]
+        unknown = [row["part"] for row in bom_rows(assembled(board)) if not row["lcsc"]]
         if unknown:
             yield (
                 f"Without a number of the distributor in the bill of materials: "

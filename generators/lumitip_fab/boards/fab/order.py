@@ -15,7 +15,7 @@ Row = dict[str, str]
 
 def bill_of_materials(board: Placement, fab: Fab) -> bytes:
     """One row for each kind of part, with its references."""
-    return _table(fab.bom, bom_rows(board))
+    return _table(fab.bom, bom_rows(assembled(board)))
 
 
 def placement_list(board: Placement, fab: Fab) -> bytes:
@@ -34,10 +34,15 @@ def assembled(board: Placement) -> list[Component]:
     return [part for part in bought(board) if part.assembled]
 
 
-def bom_rows(board: Placement) -> Iterator[Row]:
+def by_hand(board: Placement) -> list[Component]:
+    """The parts that are soldered on by hand, in order of reference."""
+    return [part for part in bought(board) if part.hand_soldered]
+
+
+def bom_rows(parts: Iterable[Component]) -> Iterator[Row]:
     """The rows by field."""
     kinds: dict[tuple[str, ...], list[str]] = {}
-    for part in assembled(board):
+    for part in parts:
         key = (part.manufacturer, part.part, part.value, part.footprint.name, part.lcsc)
         kinds.setdefault(key, []).append(part.ref)
     for item, ((manufacturer, number, value, footprint, lcsc), refs) in enumerate(kinds.items(), 1):
