@@ -65,7 +65,7 @@ def _unguarded(
     schema = mcap.register_schema(SCHEMA_NAME, "ros2msg", schema_text().encode())
     channel = mcap.register_channel(topic, "cdr", schema)
     for frame in frames:
-        mcap.add_message(channel, 0, encode(frame, "AA:BB"), 0)
+        mcap.add_message(channel, 0, encode(frame, "AA:BB", frame.dropped_before), 0)
     mcap.finish()
     return bare.getvalue()
 

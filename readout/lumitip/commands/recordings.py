@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from lumitip.processing import Contact
+    from lumitip.recording import Summary
 
 _SLOWEST = 0.001
 
@@ -24,7 +25,7 @@ def info(options: argparse.Namespace) -> int:
         "design": f"{metadata.layout.design_hash[:16]}, {len(metadata.layout)} cells",
         "begun": datetime.fromtimestamp(metadata.start_wall, UTC).isoformat(" ", "seconds"),
         "frames": f"{summary.frames} in {summary.seconds:.3f} s, {summary.rate_hz:.1f} a second",
-        "lost": str(summary.lost),
+        "lost": _lost(summary),
         "calibration": " and ".join(references) or "none",
         "made with": ", ".join(f"{k} {v}" for k, v in sorted(metadata.versions.items())),
         "damage": "; ".join(summary.damage[:5]) or "none",
@@ -34,6 +35,12 @@ def info(options: argparse.Namespace) -> int:
     if summary.damage:
         print(f"`lumitip recover {options.file}` saves the readable frames")
     return 1 if summary.damage else 0
+
+
+def _lost(summary: "Summary") -> str:
+    if summary.lost_known:
+        return str(summary.lost)
+    return f"at least {summary.lost}" if summary.lost else "unknown"
 
 
 def export(options: argparse.Namespace) -> int:

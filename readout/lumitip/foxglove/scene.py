@@ -193,7 +193,7 @@ class _Topics:
                 frames_message.SCHEMA_NAME, "ros2msg", text
             )
         schema = self._schemas[frames_message.SCHEMA_NAME]
-        data = frames_message.encode(frame, device_id)
+        data = frames_message.encode(frame, device_id, frame.dropped_before)
         self._add(
             frames_message.frames_topic(name), "cdr", schema, at_ns, data, frame.seq & 0xFFFFFFFF
         )

@@ -39,7 +39,7 @@ class Arrival:
     recording."""
 
 
-EventKind = Literal["connected", "lost", "restarted", "warm", "ended", "failed"]
+EventKind = Literal["connected", "lost", "restarted", "clock", "warm", "ended", "failed"]
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,9 @@ class LinkEvent:
     """A change of state of a link or device."""
 
     kind: EventKind
-    """`"connected"`, first or again; `"lost"`, reconnecting; `"restarted"`, the device; `"warm"`,
-    five minutes after power-on; `"ended"`, a recording; `"failed"`, for good, see `error`."""
+    """`"connected"`, first or again; `"lost"`, reconnecting; `"restarted"`, the device; `"clock"`,
+    the computer's was set; `"warm"`, five minutes after power-on; `"ended"`, a recording;
+    `"failed"`, for good, see `error`."""
     detail: str
     """Text for the user."""
     error: LinkError | None = None

@@ -38,6 +38,7 @@ _NUMBERS = struct.Struct("<QddiB3xI")
 _TIME = struct.Struct("<iI")
 _LENGTH = struct.Struct("<I")
 _NANO = 1_000_000_000
+_MOST_LOST = (1 << 31) - 1  # the limit of int32
 _MOST_SEQ = (1 << 63) - 1  # the limit of int64, for tables and arrays
 
 
@@ -48,8 +49,25 @@ def stamp_ns(t_wall: float) -> int:
     return seconds * _NANO + round((t_wall - seconds) * _NANO)
 
 
-def encode(frame: Frame | RecordedFrame, device_id: str) -> bytes:
-    """Encode a message."""
+def missing_before(frame: Frame | RecordedFrame, last_seq: int | None) -> int | None:
+    """Frames missing between a frame and the one before it in a file; `None` if unknown.
+
+    Args:
+        frame: the frame.
+        last_seq: number of the frame before; `None` for the first of the file.
+    """
+    gap = 0 if last_seq is None else frame.seq - last_seq - 1
+    return gap if gap > (frame.dropped_before or 0) else frame.dropped_before
+
+
+def encode(frame: Frame | RecordedFrame, device_id: str, dropped_before: int | None) -> bytes:
+    """Encode a message.
+
+    Args:
+        frame: the frame.
+        device_id: its device.
+        dropped_before: as `missing_before`; `None` if unknown.
+    """
     name = device_id.encode() + b"\0"
     sec, nanosec = divmod(stamp_ns(frame.t_wall), _NANO)
     text = _LENGTH.pack(len(name)) + name
@@ -59,7 +77,7 @@ def encode(frame: Frame | RecordedFrame, device_id: str) -> bytes:
         frame.seq,
         float("nan") if frame.t_device is None else frame.t_device,
         frame.t_host,
-        -1 if frame.dropped_before is None else frame.dropped_before,
+        -1 if dropped_before is None else min(dropped_before, _MOST_LOST),
         frame.bits,
         codes.size,
     )

@@ -1,17 +1,12 @@
 """`Reader` and `summarise`: the frames of a recording, also of a damaged one."""
 
-import io
-import struct
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import IO, BinaryIO, NamedTuple, cast
+from typing import BinaryIO
 
-import zstandard
-from mcap.exceptions import EndOfFile, InvalidMagic, McapError
-from mcap.records import Channel, Chunk, Footer, McapRecord, Message, Schema
+from mcap.records import Channel, Message, Schema
 from mcap.records import Metadata as MetadataRecord
-from mcap.stream_reader import StreamReader, breakup_chunk
 
 from lumitip import arguments
 from lumitip.frame import RecordedFrame
@@ -22,34 +17,10 @@ from lumitip.recording.message import (
     RecordingError,
     decode,
     frames_topic,
+    missing_before,
 )
 from lumitip.recording.metadata import FINGER, NAME, Metadata
-
-_MOST_BYTES = 64 * 2**20  # of one record: far above those of `Writer`
-# Exceptions of the libraries for damaged bytes (MemoryError for a wrong length), and OSError of a
-# failed or removed disk.
-_FAULTS = (
-    McapError,
-    ValueError,
-    struct.error,
-    zstandard.ZstdError,
-    RuntimeError,
-    EOFError,
-    OverflowError,
-    MemoryError,
-    KeyError,
-    IndexError,
-    TypeError,
-    OSError,
-)
-
-
-class Fault(NamedTuple):
-    """Damage of a file."""
-
-    why: str
-    ends: bool
-    """Whether nothing after it can be read."""
+from lumitip.recording.records import Fault, records
 
 
 class Reader:
@@ -83,19 +54,20 @@ class Reader:
         return self.metadata.layout
 
     def __iter__(self) -> Iterator[RecordedFrame]:
-        """Yield the frames.
+        """Yield the frames. `dropped_before` counts those too that the file has lost.
 
         Raises:
             DamagedError: at the first damage, unless tolerant.
             RecordingError: if the file cannot be opened.
         """
         self.damage = ()
-        frames = 0
+        frames, last_seq = 0, None
         with self._open() as stream:
             for found in read_frames(stream, len(self.layout), self.finger):
                 if isinstance(found, RecordedFrame):
-                    frames += 1
-                    yield found
+                    missing = missing_before(found, last_seq)
+                    frames, last_seq = frames + 1, found.seq
+                    yield replace(found, dropped_before=missing)
                     continue
                 self.damage += (found.why,)
                 if not self.tolerant:
@@ -124,7 +96,10 @@ class Summary:
     seconds: float
     """From the first frame to the last, by the wall clock."""
     lost: int
-    """Frames sent but not received, as far as known."""
+    """Frames missing in the file, as far as known: lost on the link, not taken in time by the
+    program that recorded, or in a damaged part."""
+    lost_known: bool
+    """Whether that is all of them: the published firmware does not number its frames."""
     damage: tuple[str, ...]
     """Damage of the file, for the user."""
 
@@ -145,13 +120,14 @@ def summarise(path: str | Path, finger: str | None = None) -> Summary:
         RecordingError: if it is not a recording.
     """
     reader = Reader(path, tolerant=True, finger=finger)
-    frames, lost, first, last = 0, 0, 0.0, 0.0
+    frames, lost, known, first, last = 0, 0, True, 0.0, 0.0
     for frame in reader:
         first = first if frames else frame.t_wall
         last = frame.t_wall
         frames += 1
         lost += frame.dropped_before or 0
-    return Summary(reader.metadata, frames, last - first, lost, reader.damage)
+        known = known and frame.dropped_before is not None
+    return Summary(reader.metadata, frames, last - first, lost, known, reader.damage)
 
 
 def read_metadata(stream: BinaryIO, source: str, finger: str | None = None) -> tuple[str, Metadata]:
@@ -163,12 +139,12 @@ def read_metadata(stream: BinaryIO, source: str, finger: str | None = None) -> t
             fingertips and not the one that is named.
     """
     texts: dict[str, dict[str, str]] = {}
-    for record in _records(stream):
+    for record in records(stream):
         if isinstance(record, MetadataRecord) and record.name == NAME:
             texts[record.metadata.get(FINGER, "")] = record.metadata
         if isinstance(record, Fault) and not texts:
             raise RecordingError(f"{source} is no MCAP recording, or is cut off: {record.why}")
-        if isinstance(record, Chunk | Message | Fault):
+        if isinstance(record, Schema | Channel | Message | Fault):
             break
     if not texts:
         raise RecordingError(f"{source} is an MCAP file, but not a recording of a fingertip")
@@ -196,9 +172,10 @@ def read_frames(stream: BinaryIO, cells: int, finger: str = "") -> Iterator[Reco
         cells: of each frame.
         finger: whose frames, in a file with several fingertips.
     """
-    ours: set[int] = set()
+    # In a recording of one fingertip the only channel may be in a damaged chunk.
+    ours: dict[int, bool] = {}
     schemas: dict[int, Schema] = {}
-    for record in _unpacked(stream):
+    for record in records(stream):
         if isinstance(record, Fault):
             yield record
         elif isinstance(record, Schema):
@@ -207,82 +184,10 @@ def read_frames(stream: BinaryIO, cells: int, finger: str = "") -> Iterator[Reco
             schema = schemas.get(record.schema_id)
             whose = not finger or record.topic == frames_topic(finger)
             cdr = record.message_encoding == "cdr"
-            if schema and schema.name == SCHEMA_NAME and cdr and whose:
-                ours.add(record.id)
-        elif isinstance(record, Message) and record.channel_id in ours:
+            known = schema is not None and schema.name == SCHEMA_NAME
+            ours[record.id] = known and cdr and whose
+        elif isinstance(record, Message) and ours.get(record.channel_id, not finger):
             try:
                 yield decode(record.data, cells)
             except RecordingError as error:
                 yield Fault(str(error), ends=False)
-
-
-def _unpacked(stream: BinaryIO) -> Iterator[McapRecord | Fault]:
-    """Records of the file, those within chunks included."""
-    for record in _records(stream):
-        if not isinstance(record, Chunk):
-            yield record
-            continue
-        try:
-            inside = _opened(record)
-        except _FAULTS as error:
-            yield Fault(f"a chunk cannot be read ({_text(error)})", ends=False)
-        else:
-            yield from inside
-
-
-def _opened(chunk: Chunk) -> list[McapRecord]:
-    size = chunk.uncompressed_size
-    if chunk.compression == "zstd":
-        size = max(size, zstandard.frame_content_size(chunk.data))
-    if size > _MOST_BYTES:
-        raise ValueError(f"{size} bytes")
-    return breakup_chunk(chunk, validate_crc=True)
-
-
-def _records(stream: BinaryIO) -> Iterator[McapRecord | Fault]:
-    """Records of the file, with whole chunks; the last may be a fault."""
-    try:
-        bounded = _Bounded(stream)
-    except OSError as error:
-        yield Fault(f"it cannot be read ({_text(error)})", ends=True)
-        return
-    source = cast(IO[bytes], bounded)
-    records = StreamReader(source, emit_chunks=True, record_size_limit=_MOST_BYTES).records
-    while True:
-        try:
-            record = next(records)
-        except StopIteration:
-            return
-        except _FAULTS as error:
-            at = bounded.tell()
-            yield Fault(f"it ends near byte {at} ({_text(error)})", ends=True)
-            return
-        yield record
-        if isinstance(record, Footer):
-            return
-
-
-class _Bounded:
-    """A stream that limits reads to its size: Python allocates what is asked for first."""
-
-    def __init__(self, stream: BinaryIO) -> None:
-        self._stream = stream
-        self._left = stream.seek(0, io.SEEK_END)
-        self._size = self._left
-        stream.seek(0)
-
-    def read(self, size: int = -1) -> bytes:
-        data = self._stream.read(self._left if size < 0 else min(size, self._left))
-        self._left -= len(data)
-        return data
-
-    def tell(self) -> int:
-        return self._size - self._left
-
-
-def _text(error: BaseException) -> str:
-    if isinstance(error, InvalidMagic):
-        return "not the bytes that begin and end an MCAP file"
-    if isinstance(error, struct.error | EOFError | EndOfFile):
-        return "the bytes of a record are missing"
-    return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import TracebackType
 
@@ -21,6 +21,7 @@ from lumitip.values import shown
 CHUNK_BYTES = 2048
 FLUSH_S = 0.2
 TOPIC = "/lumitip/frames"
+_SET_S = 0.5  # a step of the wall clock: that of a link is above it
 
 
 class Writer:
@@ -70,6 +71,9 @@ class Writer:
         )
         self.frames = 0
         """Frames written so far."""
+        self._last_seq: int | None = None
+        self._offset_s: float | None = None
+        self._set_s = 0.0
         try:
             self._file = self.path.open("xb")
         except FileExistsError as error:
@@ -114,17 +118,31 @@ class Writer:
             raise message.RecordingError(
                 f"the frame has shape {frame.raw.shape}; the layout needs ({cells},)"
             )
+        frame = self._steady(frame)
         at_ns = message.stamp_ns(frame.t_wall)
-        data = message.encode(frame, self.metadata.device_id)
+        missing = message.missing_before(frame, self._last_seq)
+        data = message.encode(frame, self.metadata.device_id, missing)
         try:
             self._mcap.add_message(self._channel, at_ns, data, at_ns, frame.seq & 0xFFFFFFFF)
             self.frames += 1
+            self._last_seq = frame.seq
             now = time.monotonic()
             if now - self._flushed >= FLUSH_S:
                 self._mcap.flush()
                 self._flushed = now
         except OSError as error:
             raise self._failure(error) from error
+
+    def _steady(self, frame: Frame | RecordedFrame) -> Frame | RecordedFrame:
+        """The frame by the computer's clock as it was at the first one: it may be set since."""
+        if isinstance(frame, RecordedFrame):
+            return frame
+        offset_s = frame.t_wall - frame.t
+        step_s = 0.0 if self._offset_s is None else offset_s - self._offset_s
+        self._offset_s = offset_s
+        if abs(step_s) > _SET_S:
+            self._set_s += step_s
+        return replace(frame, t_wall=frame.t_wall - self._set_s) if self._set_s else frame
 
     def __repr__(self) -> str:
         return f"<Writer {self.path}: {self.metadata.device_id}, {self.frames} frames>"

@@ -16,6 +16,8 @@ from lumitip.session.arrivals import ArrivalTime
 from lumitip.session.stats import Counter
 from lumitip.session.timing import DeviceClock, SteadyTime, Timeline
 
+_SET_S = 1.0  # the least step of the computer's clock that is followed
+
 
 @dataclass(frozen=True)
 class Source:
@@ -43,9 +45,8 @@ class Intake:
         self._arrivals = ArrivalTime()
         self._fault_since: Fault | None = None
         self._legacy_frames = 0
-        self._first_recorded = True
-        # Measured once: setting the clock of the computer must not affect a recording.
-        self._wall_s = time.time() - time.monotonic()
+        self._recorded_offset_s: float | None = None
+        self._wall_s = _wall_offset_s()
 
     def reconnected(self) -> None:
         """Note that the link has reconnected."""
@@ -67,7 +68,10 @@ class Intake:
             return []
         if isinstance(content, RecordedFrame):
             frames = [self._recorded(content)]
-        elif isinstance(content, Packet):
+            self._counter.frames(frames)
+            return frames
+        self._follow_clock()
+        if isinstance(content, Packet):
             frames = self._of_packet(content, arrival.t_host)
         else:
             frames = [self._legacy(content, arrival.t_host)]
@@ -147,9 +151,19 @@ class Intake:
 
     def _recorded_wall_s(self, frame: RecordedFrame) -> float:
         # Offset between the wall clock and the monotonic clock of the recording computer.
-        if self._first_recorded:
-            self._wall_s, self._first_recorded = frame.t_wall - frame.t_host, False
-        return self._wall_s
+        if self._recorded_offset_s is None:
+            self._recorded_offset_s = frame.t_wall - frame.t_host
+        return self._recorded_offset_s
+
+    def _follow_clock(self) -> None:
+        """Take over the computer's clock if it was set: small steps are left out, since times of
+        frames would go back with them."""
+        offset_s = _wall_offset_s()
+        step_s = offset_s - self._wall_s
+        if abs(step_s) > _SET_S:
+            self._wall_s = offset_s
+            detail = f"the computer's clock was set by {step_s:+.1f} s; t_wall follows it"
+            self._report(LinkEvent("clock", detail))
 
     def _values(self, raw: Codes, bits: int) -> Values:
         values = complement(raw, bits)
@@ -169,6 +183,11 @@ class Intake:
         layout = self._source.layout
         if packet.design != design_code(layout.design_hash) and not self._source.any_design:
             raise _wrong(packet.design, layout, self._source.device_id())
+
+
+def _wall_offset_s() -> float:
+    """Seconds since 1970 at the zero of the monotonic clock."""
+    return time.time() - time.monotonic()
 
 
 def _wrong(

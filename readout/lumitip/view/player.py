@@ -48,6 +48,7 @@ class Player:
             )
         if not self._frames:
             raise ViewError(f"{path} has no frame")
+        self._damage = f"damaged: {'; '.join(reader.damage[:3])}" if reader.damage else ""
         walls = np.array([f.t_wall for f in self._frames])
         # The wall clock may have been set back during the recording.
         steps = np.clip(np.diff(walls, prepend=walls[0]), 0.0, LONGEST_GAP_S)
@@ -122,6 +123,7 @@ class Player:
                 "position_s": float(self._at_s[last]),
                 "length_s": float(self._at_s[-1]),
                 "speed": self._speed,
+                "damage": self._damage,
             }
 
     def _index(self, position_s: float) -> int:

@@ -1,12 +1,14 @@
 """Times of frames: in order, and at the distance of the device clock."""
 
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from lumitip import Fingertip, LinkEvent
+from lumitip import Fingertip, Layout, LinkEvent
 from lumitip.errors import NotConnected
+from lumitip.recording import Reader, Writer
 from lumitip.session.arrivals import ArrivalTime
 from lumitip.session.timing import DeviceClock, SteadyTime
 
@@ -24,6 +26,46 @@ def test_frames_keep_their_distance_when_a_stall_begins_the_link(open_feed) -> N
     assert steps_s[-1] == pytest.approx(0.04, abs=1e-6), "it has caught up"
     assert frames[-1].t <= frames[-1].t_host
     assert np.diff([f.t_wall for f in frames]).min() > 0.0
+
+
+@pytest.mark.parametrize("set_by_s", [17_280_000.0, -3600.0])
+def test_the_wall_time_follows_the_computers_clock_where_it_is_set(
+    open_feed, layout: Layout, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, set_by_s: float
+) -> None:
+    events: list[LinkEvent] = []
+    tip, feed = open_feed(on_event=events.append)
+    wall, frames = time.time, []
+    with Writer(tmp_path / "across.mcap", layout, device_id="feed") as writer:
+        for number in range(20):
+            if number == 10:
+                monkeypatch.setattr(time, "time", lambda: wall() + set_by_s)
+            feed.packet(number)
+            frames.append(tip.latest())
+            writer.write(frames[-1])
+    assert frames[-1].t_wall == pytest.approx(wall() + set_by_s, abs=60.0)
+    assert [e.kind for e in events] == ["connected", "clock"]
+    assert f"set by {set_by_s:+.1f} s" in events[-1].detail
+    # Within a recording times go on; one that is begun later has the new clock.
+    across = [frame.t_wall for frame in Reader(tmp_path / "across.mcap")]
+    np.testing.assert_allclose(np.diff(across), np.diff([f.t for f in frames]), atol=1e-4)
+    with Writer(tmp_path / "later.mcap", layout, device_id="feed") as writer:
+        writer.write(frames[-1])
+    later = Reader(tmp_path / "later.mcap")
+    assert next(iter(later)).t_wall == pytest.approx(later.metadata.start_wall, abs=60.0)
+
+
+def test_a_clock_that_is_trimmed_does_not_move_the_times(
+    open_feed, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    events: list[LinkEvent] = []
+    tip, feed = open_feed(on_event=events.append)
+    feed.packet(0)
+    first, wall = tip.latest(), time.time
+    monkeypatch.setattr(time, "time", lambda: wall() + 0.6)
+    feed.packet(1)
+    second = tip.latest()
+    assert second.t_wall - second.t == first.t_wall - first.t
+    assert [e.kind for e in events] == ["connected"]
 
 
 @pytest.mark.parametrize("stall_s", [0.2, 1.0, 2.0, 5.0])
@@ -68,8 +110,9 @@ def test_legacy_frames_of_one_moment_have_times_in_order(
     open_feed, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tip, feed = open_feed()
-    now = time.monotonic()
+    now, wall_s = time.monotonic(), time.time() - time.monotonic()
     monkeypatch.setattr(time, "monotonic", lambda: now)
+    monkeypatch.setattr(time, "time", lambda: now + wall_s)
     frames = []
     for value in range(90):
         now += 0.06 if value % 3 == 0 else 0.0

@@ -16,11 +16,12 @@ RATE_HZ = 55.0
 
 
 def frames(count: int, bits: int = 8, legacy: bool = False, cells: int = 32) -> list[Frame]:
-    """Frames of random codes at 55 Hz; every tenth had one lost before it."""
+    """Frames of random codes at 55 Hz; every tenth had one lost before it, unless they are legacy
+    ones, which are numbered as they arrive."""
     chance = np.random.default_rng(bits)
     made, seq = [], 0
     for i in range(count):
-        lost = 1 if i % 10 == 9 else 0
+        lost = 1 if i % 10 == 9 and not legacy else 0
         seq += 1 + lost
         at = i / RATE_HZ
         raw = chance.integers(0, 1 << bits, cells).astype(np.uint8 if bits == 8 else np.uint16)

@@ -17,6 +17,7 @@ from mcap.stream_reader import StreamReader, breakup_chunk
 from rosbags.highlevel import AnyReader
 
 from lumitip import Layout
+from lumitip.cli import main
 from lumitip.frame import Frame
 from lumitip.recording import DamagedError, Reader, RecordingError, recover, summarise
 from lumitip.recording.message import decode, encode
@@ -33,6 +34,7 @@ _WORKER = """
 import sys, time
 import numpy as np
 from lumitip import Layout
+from lumitip.cli import main
 from lumitip.recording import RecordedFrame, Writer
 
 layout = Layout.load(sys.argv[1])
@@ -141,10 +143,65 @@ def test_a_hole_costs_its_own_chunk_alone(
         read.extend(strict)
     found = recover(path, tmp_path / "saved.mcap")
     assert found.frames == 400 - lost
-    assert len(found.damage) == 1 and "a chunk cannot be read" in found.damage[0]
+    assert len(found.damage) == 1 and "cannot be read (ZstdError" in found.damage[0]
     kept = [f.seq for f in Reader(tmp_path / "saved.mcap")]
     seqs = [f.seq for f in given]
     assert kept == seqs[:before] + seqs[before + lost :]
+
+
+@pytest.mark.parametrize(
+    "damage",
+    {
+        "zeros over the head of a chunk": lambda data, at: data.__setitem__(
+            slice(at - 300, at + 300), bytes(600)
+        ),
+        "a chunk that claims to be longer": lambda data, at: data.__setitem__(at + 2, 0x40),
+        "a chunk that claims to be shorter": lambda data, at: data.__setitem__(
+            slice(at + 1, at + 3), b"\x20\0"
+        ),
+        "a hundred bytes gone": lambda data, at: data.__delitem__(slice(at - 50, at + 50)),
+        "foreign bytes between": lambda data, at: data.__setitem__(
+            slice(at, at), bytes(range(256)) * 5
+        ),
+    }.items(),
+    ids=lambda item: item[0],
+)
+def test_a_damage_costs_the_chunks_at_it_alone(
+    make_frames: Make,
+    record: Record,
+    tmp_path: Path,
+    damage: tuple[str, Callable[[bytearray, int], None]],
+) -> None:
+    given = make_frames(400)
+    path = record(given)
+    data = bytearray(path.read_bytes())
+    ends = _chunk_ends(bytes(data))
+    at = data.index(b"\x04\0\0\0zstd", ends[10][0]) - 37  # the head of chunk 11
+    damage[1](data, at)
+    path.write_bytes(data)
+    found = recover(path, tmp_path / "saved.mcap")
+    most = sum(n for _, n in ends[10:13])
+    assert 400 - most <= found.frames < 400 + 1
+    assert found.damage and not found.damage[0].startswith("it ends")
+    raws = {frame.seq: frame.raw for frame in given}
+    for frame in Reader(found.path):
+        np.testing.assert_array_equal(frame.raw, raws[frame.seq])
+    missing = 400 - found.frames
+    assert summarise(path).lost == summarise(found.path).lost == 40 + missing
+
+
+def test_the_first_chunk_with_schema_and_channel_may_be_lost(
+    make_frames: Make, record: Record, tmp_path: Path
+) -> None:
+    path = record(make_frames(400))
+    data = bytearray(path.read_bytes())
+    end, lost = _chunk_ends(bytes(data))[0]
+    data[end - 30] ^= 1
+    path.write_bytes(data)
+    found = recover(path, tmp_path / "saved.mcap")
+    assert found.frames == 400 - lost and len(found.damage) == 1
+    with AnyReader([found.path]) as bag:
+        assert bag.message_count == found.frames
 
 
 def test_changed_bytes_are_found_or_change_nothing(
@@ -191,6 +248,36 @@ def test_the_summary_counts_what_is_there(make_frames: Make, record: Record) -> 
     assert 0 < cut.frames <= 100 and cut.damage
 
 
+def test_frames_that_the_program_missed_are_lost_too(
+    make_frames: Make, record: Record, capsys: pytest.CaptureFixture[str]
+) -> None:
+    given = make_frames(100)
+    path = record([*given[:40], *given[60:]])
+    assert summarise(path).lost == 30
+    rows = [frame.dropped_before for frame in Reader(path)]
+    assert rows[40] == 22 and sum(n or 0 for n in rows) == 30
+    assert info_of(path, capsys) == "30"
+
+
+def test_nobody_knows_what_the_published_firmware_lost(
+    make_frames: Make, record: Record, capsys: pytest.CaptureFixture[str]
+) -> None:
+    unnumbered = [replace(f, seq=i) for i, f in enumerate(make_frames(50, legacy=True))]
+    path = record(unnumbered)
+    found = summarise(path)
+    assert (found.lost, found.lost_known) == (0, False)
+    assert info_of(path, capsys) == "unknown"
+    path = record([*unnumbered[:20], *unnumbered[25:]], name="gap.mcap")
+    assert info_of(path, capsys) == "at least 5"
+
+
+def info_of(path: Path, capsys: pytest.CaptureFixture[str]) -> str:
+    """What `lumitip info` prints of lost frames."""
+    main(["info", str(path)])
+    lines = dict(line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines())
+    return lines["lost"]
+
+
 def test_a_disk_that_fails_ends_the_recording_there(
     make_frames: Make, record: Record, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -212,6 +299,6 @@ def test_a_disk_that_fails_ends_the_recording_there(
 
 def test_a_number_beyond_any_table_is_damage(make_frames: Make) -> None:
     (frame,) = make_frames(1)
-    assert decode(encode(replace(frame, seq=2**63 - 1), "dev"), 32).seq == 2**63 - 1
+    assert decode(encode(replace(frame, seq=2**63 - 1), "dev", 0), 32).seq == 2**63 - 1
     with pytest.raises(RecordingError, match="out of range"):
-        decode(encode(replace(frame, seq=2**63), "dev"), 32)
+        decode(encode(replace(frame, seq=2**63), "dev", 0), 32)

@@ -271,10 +271,10 @@ def test_files_that_are_no_recordings_are_refused(tmp_path: Path) -> None:
         ("a\0b", "cannot be read"),
         (
             "text.mcap",
-            r"no MCAP recording, or is cut off: .* \(not the bytes that begin and end an",
+            "no MCAP recording, or is cut off: not the bytes that begin an MCAP file",
         ),
-        ("short.mcap", r"near byte 1 \(the bytes of a record are missing\)"),
-        ("empty.mcap", r"near byte 0 \(the bytes of a record are missing\)"),
+        ("short.mcap", "not the bytes that begin an MCAP file"),
+        ("empty.mcap", "not the bytes that begin an MCAP file"),
         ("other.mcap", "not a recording of a fingertip"),
     ):
         with pytest.raises(RecordingError, match=said) as caught:

@@ -69,6 +69,24 @@ def test_recording_from_the_page_makes_a_readable_file(
     expect(page.locator(".recorded")).to_have_text(re.compile("recording twin-demo-002.mcap"))
 
 
+def test_references_do_not_change_while_they_are_recorded(serve: Serve, page: Page) -> None:
+    server = serve("twin://edge?rate=200")
+    opened(page, server)
+    page.keyboard.press("r")
+    expect(page.locator(".record")).to_have_attribute("aria-pressed", "true")
+    page.locator(".tare").click()
+    expect(page.locator("#notice")).to_contain_text("twin-edge-001.mcap is being recorded")
+    assert server.registry.fingers[1].tip.calibration.empty is None
+
+
+def test_a_damaged_recording_says_so(serve: Serve, page: Page, recording: Path) -> None:
+    data = bytearray(recording.read_bytes())
+    data[len(data) // 2 : len(data) // 2 + 4096] = bytes(4096)
+    recording.write_bytes(data)
+    opened(page, serve(f"replay://{recording}?speed=16"))
+    expect(page.locator(".detail")).to_contain_text("damaged: bytes ")
+
+
 def test_recording_ends_with_the_server(
     serve: Serve, page: Page, wait_for: WaitFor, tmp_path: Path
 ) -> None:

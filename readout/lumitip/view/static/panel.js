@@ -15,8 +15,9 @@ const EVERY_MS = { drawPlot: 40, drawTrends: 100, writeNumbers: 100, writeWords:
 const SILENT_S = 1; // without a frame the display is marked as old
 
 /** Text beside the name: the most urgent message. */
-function detailOf({ state, detail, silent_s, drift }, silent) {
+function detailOf({ state, detail, silent_s, drift, player }, silent) {
   if (state !== "connected") return detail;
+  if (player?.damage) return player.damage;
   return silent ? `no frame for ${silent_s.toFixed(0)} s` : drift || "";
 }
 

@@ -222,7 +222,7 @@ class FingertipNode(LifecycleNode):
         log = self.get_logger()
         if event.kind in ("failed", "ended"):
             self._fail(event.detail)
-        elif event.kind in ("lost", "restarted"):
+        elif event.kind in ("lost", "restarted", "clock"):
             log.warning(event.detail)
         else:
             log.info(event.detail)
