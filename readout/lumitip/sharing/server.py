@@ -65,8 +65,11 @@ class FingertipServer:
             SharingError: if the address is taken or cannot be used, or `url` is a recording.
             LumitipError: as `Fingertip.open`.
         """
-        if Url.parse(url).scheme == "replay":
-            raise SharingError(f"{url} is a file: each program can open it without a server")
+        source = Url.parse(url)
+        if source.scheme == "replay":
+            raise SharingError(
+                f"{source.text} is a file: each program can open it without a server"
+            )
         if isinstance(layout, str | Path):
             layout = Layout.load(layout)
         elif layout is not None:
