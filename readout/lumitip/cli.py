@@ -18,25 +18,27 @@ def run() -> None:
     """The whole process of a command."""
     import atexit
 
-    from lumitip.interrupt import leave_on_interrupt, leave_with_daemons
+    from lumitip.interrupt import leave_by_signal, leave_on_interrupt, leave_with_daemons
 
     leave_on_interrupt()
     status = 1
     atexit.register(lambda: leave_with_daemons(status))  # the first one is called last
     status = main()
+    leave_by_signal(status)
     sys.exit(status)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; returns its exit code: 2 for input that cannot be used, 130 after Ctrl-C."""
-    from lumitip.interrupt import INTERRUPTED, InterruptGuard
+    """Run a command; returns its exit code: 2 for input that cannot be used, 130 after Ctrl-C, and
+    128 more than the number of another signal."""
+    from lumitip.interrupt import InterruptGuard
 
     with InterruptGuard() as guard:
         try:
             return _run_command(arguments)
         except BaseException:
             if guard.interrupted:
-                return INTERRUPTED
+                return guard.status
             raise
 
 

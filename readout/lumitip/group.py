@@ -20,6 +20,7 @@ from lumitip.errors import ArgumentError, LinkTimeout
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Frame
 from lumitip.layout import Layout
+from lumitip.links.url import redacted
 from lumitip.options import OpenOptions, check_options
 from lumitip.values import shown
 
@@ -82,8 +83,8 @@ class FingertipGroup:
         check_options(options)
         if not isinstance(urls, Mapping) or not urls:
             raise ArgumentError(
-                f"urls is {shown(urls)}; names and addresses of at least one fingertip are needed, "
-                "such as {'left': 'ble://A1'}"
+                f"urls is {redacted(shown(urls))}; names and addresses of at least one fingertip "
+                "are needed, such as {'left': 'ble://A1'}"
             )
         if isinstance(layout, Mapping) and (unknown := sorted(set(layout) - set(urls), key=str)):
             names = ", ".join(map(str, urls))

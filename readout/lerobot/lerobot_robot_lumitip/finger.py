@@ -12,6 +12,8 @@ from lumitip import Fingertip, Frame
 from lumitip.errors import LinkTimeout, StaleFrame
 from lumitip.recording import Writer
 
+_HANDOVER_S = 0.05  # for the subscription to pass on the newest frame
+
 
 class Finger:
     """A fingertip, read by its own thread; made by `reading`."""
@@ -25,6 +27,7 @@ class Finger:
         self._frames: deque[Frame] = deque(maxlen=features.window)
         self._last_seq: int | None = None  # of the observation before
         self._failure: Exception | None = None
+        self._came = threading.Event()  # a frame, or the failure
         self._ended = False
 
     @classmethod
@@ -60,10 +63,7 @@ class Finger:
             finger = cls(features, tip, writer)
             stack.callback(finger._end)
             stack.callback(tip.subscribe(finger._add))
-            try:
-                tip.wait_latest(timeout_s)
-            except LinkTimeout as error:
-                raise LinkTimeout(f"{features.finger}: {error}") from error
+            finger._wait_first(timeout_s)
             yield finger
 
     def observe(self, max_silence_s: float) -> dict[str, float]:
@@ -92,6 +92,16 @@ class Finger:
         values = self._features.values(frames, now_s, missed, self._tip.calibration)
         return dict(zip(self._names, values, strict=True))
 
+    def _wait_first(self, timeout_s: float) -> None:
+        """Wait for a frame of the subscription; the newest of the fingertip may be from before."""
+        until_s = time.monotonic() + timeout_s
+        while not self._came.is_set():
+            try:
+                self._tip.wait_latest(max(until_s - time.monotonic(), 0.0))
+            except LinkTimeout as error:
+                raise LinkTimeout(f"{self._features.finger}: {error}") from error
+            self._came.wait(_HANDOVER_S)
+
     def _add(self, frame: Frame) -> None:
         with self._lock:
             if self._ended:
@@ -101,8 +111,10 @@ class Finger:
                     self._writer.write(frame)
             except Exception as error:
                 self._failure = error
+                self._came.set()
                 raise
             self._frames.append(frame)
+            self._came.set()
 
     def _end(self) -> None:
         with self._lock:

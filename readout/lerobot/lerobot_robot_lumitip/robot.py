@@ -130,16 +130,19 @@ class Lumitip(Robot):
 
     @check_if_not_connected
     def get_observation(self) -> dict[str, Any]:
-        """The frames of each finger since the last call, and the observation of the robot.
+        """The observation of the robot, then the frames of each finger since the last call.
+
+        The fingers come last: reading an arm and cameras takes time, and frames that come
+        meanwhile belong to this observation.
 
         Raises:
             StaleFrame: if a finger is silent for longer than `max_silence_s`.
             LumitipError: why a finger sends no more, or cannot be recorded.
         """
-        frames: dict[str, Any] = {}
+        values: dict[str, Any] = dict(self.robot.get_observation()) if self.robot else {}
         for finger in self._fingers:
-            frames |= finger.observe(self.config.max_silence_s)
-        return {**(self.robot.get_observation() if self.robot else {}), **frames}
+            values |= finger.observe(self.config.max_silence_s)
+        return values
 
     @check_if_not_connected
     def send_action(self, action: dict[str, Any]) -> dict[str, Any]:

@@ -5,7 +5,7 @@ the last is the newest, and a window that is not full has no frame in its first 
 
     lumitip_left.f0.c0 … c31    ADC codes of its cells
     lumitip_left.f0.back        frames from it to the newest of the window, lost ones included
-    lumitip_left.f0.age_s       from reading its cells to the observation (s)
+    lumitip_left.f0.age_s       from reading its cells to the end of the observation (s)
     lumitip_left.missed         frames since the observation before that are not in the window
     lumitip_left.seq            number of the newest frame, modulo 2^24
     lumitip_left.bits           of its codes
@@ -60,7 +60,7 @@ class WindowFeatures:
 
         Args:
             frames: the newest frames, oldest first, at most `window`.
-            now_s: time of the observation, `time.monotonic` (s).
+            now_s: end of the observation, `time.monotonic` (s).
             missed: frames since the observation before that are not among them.
             calibration: the references of the finger.
         """
@@ -88,7 +88,8 @@ class Windows:
     back: Integers
     """Frames from each to the newest of its window, shape `(n, window)`; -1 without a frame."""
     age_s: NDArray[np.float32]
-    """From reading the cells to the observation (s), shape `(n, window)`; -1 without a frame."""
+    """From reading the cells to the end of the observation (s), shape `(n, window)`; -1 without a
+    frame."""
     missed: Integers
     """Frames between two observations that are not in the window, shape `(n,)`."""
     seq: Integers | None = None

@@ -10,7 +10,7 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from lumitip.commands.common import layout_path, open_fingertip
-from lumitip.interrupt import INTERRUPTED
+from lumitip.interrupt import INTERRUPTED, ending_signals
 
 if TYPE_CHECKING:
     from lumitip.fingertip import Fingertip
@@ -126,9 +126,9 @@ class _Interruption:
 
 @contextmanager
 def _interrupts() -> Iterator["_Interruption"]:
-    """Notes SIGINT and SIGTERM, so that neither interrupts the writing of a frame."""
+    """Notes `ending_signals`, so that none interrupts the writing of a frame."""
     interrupted = _Interruption()
-    signals = (signal.SIGINT, signal.SIGTERM)
+    signals = ending_signals()
     before = [signal.signal(number, interrupted.note) for number in signals]
     try:
         yield interrupted

@@ -15,8 +15,9 @@ def twin(options: argparse.Namespace) -> int:
     from lumitip.links.serve import SerialDevice
     from lumitip.links.url import Url
 
-    if Url.parse(options.url).scheme != "twin":
-        raise UrlError(f"the address is {options.url!r}; one like twin://demo is needed")
+    address = Url.parse(options.url)
+    if address.scheme != "twin":
+        raise UrlError(f"the address is {address.text!r}; one like twin://demo is needed")
     path = layout_path(options, options.url)
     link = open_link(options.url, Layout.load(path) if path else None)
     with SerialDevice(options.link) as device:

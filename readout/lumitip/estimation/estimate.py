@@ -24,6 +24,7 @@ frames the cloth edge has 9 counts; corner and cable have 18 to 29, since their 
 hem nor bend."""
 BEND = "curvature_per_mm"
 _WEAK_MM, _WEAK_DEG = 1.0, 6.0
+_LEAST_GAIN = 1e-3  # with less light beside an object nothing is known of what it lets through
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,7 +42,7 @@ class Estimate:
     width_mm: float
     """Diameter of a cable (mm), NaN for other kinds."""
     transmittance: float
-    """Share of light that passes the object, 0 to 1."""
+    """Share of light that passes the object, 0 to 1; NaN without light beside it."""
     gain: float
     """Light beside the object as a share of the empty grasp."""
     covariance: Floats
@@ -67,7 +68,10 @@ class Estimate:
     direction_deg: float = np.nan
     """Direction from a corner's vertex into the sheet, in [−180, 180]."""
     parameters: tuple[str, ...] = ()
-    """Names of the rows of `covariance`; `x_mm` and `y_mm` are those of a corner's vertex."""
+    """Names of the rows of `covariance`, those of the numbers above: all kinds have `angle_deg`,
+    `offset_mm`, `transmittance` (before it is limited to 0 to 1; no row where it is NaN) and
+    `gain`; a cable has `width_mm` and may have `curvature_per_mm`, a corner `direction_deg`,
+    `opening_deg`, and its vertex as `x_mm` and `y_mm`."""
     left_out: tuple[int, ...] = ()
     """Cells that the estimate does not use: those without a finite value, and a few that read an
     end of the scale while all others agree on a line: dead, stuck or covered."""
@@ -148,7 +152,7 @@ def report(
         spread[at] *= -1.0
         spread[:, at] *= -1.0
     bend = float(pose[names.index(BEND)]) if BEND in names else 0.0
-    light, taken = float(pose[-2]), float(pose[-1])
+    gain, taken = float(pose[-2]), float(pose[-1])
     misfit = rms_counts(found)
     faults = {
         "misfit": misfit > MISFIT_COUNTS,
@@ -162,8 +166,8 @@ def report(
         offset_mm=offset_mm,
         angle_deg=angle_deg,
         width_mm=float(pose[2]) if shape.kind == "cable" else math.nan,
-        transmittance=min(max(1.0 - taken / light, 0.0), 1.0) if light > 0.0 else math.nan,
-        gain=light,
+        transmittance=min(max(1.0 - taken / gain, 0.0), 1.0) if gain > _LEAST_GAIN else math.nan,
+        gain=gain,
         covariance=spread,
         quality=_quality(found),
         curvature_per_mm=-bend if turned else bend,
@@ -211,19 +215,32 @@ def _line(
 ) -> tuple[tuple[float, float], Floats, tuple[str, ...]]:
     """Angle (rad) and offset (mm) of the reported line, the derivatives of all reported parameters
     by the pose, and their names."""
-    size = pose.size
+    light, light_names = _light(pose)
     if "opening_deg" not in names:
-        by_pose = np.eye(size)[[*range(len(names)), -2, -1]]
+        by_pose = np.eye(pose.size)[: len(names)]
         by_pose[0, 0] = math.degrees(1.0)
-        return (float(pose[0]), float(pose[1])), by_pose, (*names, "light", "taken")
+        line = float(pose[0]), float(pose[1])
+        return line, np.vstack([by_pose, light]), (*names, *light_names)
     angle, x_mm, y_mm, opening = (float(v) for v in pose[:4])
     borders = ((angle + opening / 2.0, 0.5), (angle - opening / 2.0 + math.pi, -0.5))
     border, half = min(borders, key=lambda b: abs(math.sin(b[0])))
     cos, sin = math.cos(border), math.sin(border)
     ahead_mm = -y_mm * sin - x_mm * cos
-    by_pose = np.zeros((6, size))
+    by_pose = np.zeros((6, pose.size))
     by_pose[0, [0, 3]] = math.degrees(1.0), math.degrees(half)
     by_pose[1, :4] = ahead_mm, -sin, cos, half * ahead_mm
     by_pose[range(2, 6), range(4)] = math.degrees(1.0), 1.0, 1.0, math.degrees(1.0)
     names = ("angle_deg", "offset_mm", "direction_deg", "x_mm", "y_mm", "opening_deg")
-    return (border, y_mm * cos - x_mm * sin), by_pose, names
+    line = border, y_mm * cos - x_mm * sin
+    return line, np.vstack([by_pose, light]), (*names, *light_names)
+
+
+def _light(pose: Floats) -> tuple[Floats, tuple[str, ...]]:
+    """Derivatives of transmittance and gain by the pose, and their names."""
+    gain, taken = float(pose[-2]), float(pose[-1])
+    rows = np.zeros((2, pose.size))
+    rows[1, -2] = 1.0
+    if gain <= _LEAST_GAIN:
+        return rows[1:], ("gain",)
+    rows[0, -2:] = taken / gain**2, -1.0 / gain
+    return rows, ("transmittance", "gain")

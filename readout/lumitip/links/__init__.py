@@ -46,7 +46,7 @@ def open_link(
     address = Url.parse(url)
     if address.scheme not in SCHEMES:
         allowed = ", ".join(f"{name}://…" for name in SCHEMES)
-        raise UrlError(f"the address is {url!r}; allowed are {allowed}")
+        raise UrlError(f"the address is {address.text!r}; allowed are {allowed}")
     module = import_module(SCHEMES[address.scheme])
     if layout is None and address.scheme in DEVICES:
         layout, address = _known(module.identify(address, timeout_s))

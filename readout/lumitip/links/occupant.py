@@ -5,7 +5,7 @@ import http.client
 import socket
 
 from lumitip.errors import AccessRefused, LinkError, LumitipError
-from lumitip.links.tcp import Address, greeting_of
+from lumitip.links.tcp import Address, ServerFull, greeting_of
 from lumitip.listening import listen
 
 _ANSWER_S = 1.25  # on this computer; asked twice
@@ -33,7 +33,7 @@ def _occupant(address: Address) -> str:
     other = "choose another --port; port 0 is any free one"
     try:
         device = greeting_of(address, _ANSWER_S).device_id
-    except AccessRefused:
+    except (AccessRefused, ServerFull):
         return f"`lumitip serve` listens there. Open the address that it has printed, or {other}"
     except LinkError:
         if _is_live_view(address):

@@ -14,7 +14,7 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -43,13 +43,17 @@ _CHUNK_BYTES = 1 << 16
 _TARGET = re.compile(r"(\[[0-9A-Fa-f:.%\w]+\]|[^\[\]:/]+)(?::(\d{1,5}))?")
 
 
+class ServerFull(NotConnected):
+    """The server has as many clients as it takes; there may be room later."""
+
+
 @dataclass(frozen=True)
 class Address:
     """Where a server listens."""
 
     host: str
     port: int = DEFAULT_PORT
-    token: str | None = None
+    token: str | None = field(default=None, repr=False)
 
     def __str__(self) -> str:
         host = f"[{self.host}]" if ":" in self.host else self.host
@@ -148,7 +152,8 @@ class Connection:
             _, kind, payload = message
             record = self._record(payload)
             if kind == Kind.REFUSED:
-                raise AccessRefused(f"{self._address}: {record.get('why')}")
+                refused = ServerFull if record.get("full") is True else AccessRefused
+                raise refused(f"{self._address}: {record.get('why')}")
             try:
                 layout = Layout.from_json(str(record["layout"]), str(self._address))
                 return Greeting(str(record["device_id"]), layout, bool(record["connected"]))

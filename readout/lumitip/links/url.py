@@ -2,14 +2,16 @@
 
 import math
 import os
+import re
 import unicodedata
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from urllib.parse import parse_qsl, unquote
+from urllib.parse import parse_qsl, unquote, unquote_plus
 
 from lumitip.errors import UrlError
 
 _LONGEST = 4096  # of a path on Linux; no name or port is as long
+_OPTION = re.compile(r"(?:^|[?;])([^=?;]*)=")
 
 
 @dataclass(frozen=True)
@@ -17,11 +19,11 @@ class Url:
     """The parts of an address."""
 
     text: str
-    """The whole address."""
+    """The whole address for messages, `redacted`."""
     scheme: str
     target: str
     """The part between `://` and the question mark, percent-decoded."""
-    options: dict[str, str]
+    options: dict[str, str] = field(repr=False)
 
     @classmethod
     def parse(cls, text: str) -> "Url":
@@ -32,26 +34,29 @@ class Url:
         """
         if not isinstance(text, str):
             raise UrlError(f"the address is {text!r:.40}; one like ble://Lumitip is needed")
+        public = redacted(text)
         if len(text) > _LONGEST:
             raise UrlError(
-                f"the address {text[:40]!r}… has {len(text)} characters; the limit is {_LONGEST}"
+                f"the address {public[:40]!r}… has {len(text)} characters; the limit is {_LONGEST}"
             )
         scheme, found, rest = text.partition("://")
         if not found:
             raise UrlError(
-                f"the address is {text!r}; one like ble://Lumitip or twin://demo is needed"
+                f"the address is {public!r}; one like ble://Lumitip or twin://demo is needed"
             )
         target, _, query = rest.partition("?")
         try:
             pairs = parse_qsl(query, keep_blank_values=True, strict_parsing=bool(query))
         except ValueError as error:
-            raise UrlError(f"{text!r}: options like ?name=value&other=value are needed") from error
+            raise UrlError(
+                f"{public!r}: options like ?name=value&other=value are needed"
+            ) from error
         if len(dict(pairs)) != len(pairs):
-            raise UrlError(f"{text!r}: an option occurs twice")
+            raise UrlError(f"{public!r}: an option occurs twice")
         for part in (unquote(target), *(word for pair in pairs for word in pair)):
             if bad := next(filter(_unusable, part), None):
-                raise UrlError(f"{text!r}: the character {bad!r} is not allowed")
-        return cls(text, scheme.lower(), unquote(target), dict(pairs))
+                raise UrlError(f"{public!r}: the character {bad!r} is not allowed")
+        return cls(public, scheme.lower(), unquote(target), dict(pairs))
 
     @property
     def path(self) -> Path:
@@ -110,6 +115,18 @@ class Url:
         if value not in allowed:
             raise UrlError(f"{self.text!r}: {name} is {value}; allowed are {', '.join(allowed)}")
         return value
+
+
+def redacted(address: str) -> str:
+    """An address, or a text that holds one, with `***` for its token: for messages, logs, pages."""
+    return "&".join(map(_without_token, address.split("&")))
+
+
+def _without_token(part: str) -> str:
+    for option in _OPTION.finditer(part):
+        if unquote_plus(option[1]).strip().lower() == "token":
+            return f"{part[: option.end()]}***"
+    return part
 
 
 def _unusable(character: str) -> bool:

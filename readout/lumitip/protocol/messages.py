@@ -5,7 +5,7 @@ messages, little-endian: kind u8, length of the payload u32, payload. The first 
 `REFUSED`.
 
     1 GREETING  JSON: device_id, connected, layout (the text of layout.json)
-    2 REFUSED   JSON: why
+    2 REFUSED   JSON: why, full (whether it is for want of room only, and a later try may do)
     3 PACKET    a packet of version 2, see `lumitip.protocol.packet`
     4 LEGACY    codes of a legacy frame, one byte for each cell
     5 FAULT     JSON: cause, packets, why, foreign ([design, cells] or null)

@@ -4,6 +4,7 @@ import contextlib
 import logging
 import socket
 import threading
+import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,9 +14,13 @@ from lumitip.protocol import messages
 from lumitip.protocol.messages import Kind, MessageError
 
 _log = logging.getLogger(__name__)
-_REQUEST_S = 5.0  # longest wait for the line of a client
-_SILENT_S = 1.0  # wait for a message before the connection is looked at
+_REQUEST_S = 5.0  # longest wait for the whole line of a client
+_SILENT_S = 0.25  # wait for a message before the connection is looked at
 _SEND_BYTES = 1 << 14  # of the operating system: what it holds is old when a slow client reads it
+
+
+class FullError(MessageError):
+    """A client with the right token, for which there is no room."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +89,7 @@ class Client:
                 self._send()
             except MessageError as error:
                 with contextlib.suppress(OSError):
-                    refusal = {"why": str(error)}
+                    refusal = {"why": str(error), "full": isinstance(error, FullError)}
                     self._socket.sendall(messages.encode_json(Kind.REFUSED, refusal))
             except OSError as error:
                 _log.debug("%s: %s", self._name, error)
@@ -99,9 +104,13 @@ class Client:
                 self._socket.shutdown(socket.SHUT_RDWR)
 
     def _request(self) -> bytes:
-        self._socket.settimeout(_REQUEST_S)
+        until_s = time.monotonic() + _REQUEST_S
         line = b""
         while not line.endswith(b"\n"):
+            left_s = until_s - time.monotonic()
+            if left_s <= 0.0:
+                raise TimeoutError(f"no line in {_REQUEST_S:g} s")
+            self._socket.settimeout(left_s)
             chunk = self._socket.recv(messages.MOST_REQUEST_BYTES)
             line += chunk
             if not chunk or len(line) > messages.MOST_REQUEST_BYTES:

@@ -21,19 +21,22 @@ from lumitip.protocol import messages
 from lumitip.protocol.messages import Kind, MessageError
 from lumitip.protocol.packet import Packet, encode
 from lumitip.session.hub import Hub
-from lumitip.sharing.client import Client, ClientCounts
+from lumitip.sharing.client import Client, ClientCounts, FullError
 
 _log = logging.getLogger(__name__)
 MOST_CLIENTS = 32
+MOST_WAITING = 32
+"""Connections that have not yet sent their line; of more, the oldest is closed."""
 _ACCEPT_S = 0.2  # so that `close` is noticed
+_ROOM_S = 0.7  # for clients that have left to be noticed; less than a new one waits
 _LAST_S = 2.0  # for the last messages to a client
 
 
 class FingertipServer:
     """Connects to a fingertip and shares it until `close`; a context manager. Thread-safe.
 
-    Each client gets every frame. Of a client that is too slow the oldest frames are dropped and
-    counted; the others are not slowed down.
+    Each of up to 32 clients gets every frame. Of a client that is too slow the oldest frames are
+    dropped and counted; the others are not slowed down.
     """
 
     def __init__(
@@ -65,8 +68,11 @@ class FingertipServer:
             SharingError: if the address is taken or cannot be used, or `url` is a recording.
             LumitipError: as `Fingertip.open`.
         """
-        if Url.parse(url).scheme == "replay":
-            raise SharingError(f"{url} is a file: each program can open it without a server")
+        source = Url.parse(url)
+        if source.scheme == "replay":
+            raise SharingError(
+                f"{source.text} is a file: each program can open it without a server"
+            )
         if isinstance(layout, str | Path):
             layout = Layout.load(layout)
         elif layout is not None:
@@ -76,7 +82,9 @@ class FingertipServer:
         self._token = server_token(token, host, SharingError)
         self._socket = listen_or_explain(host, port, SharingError)
         self._lock = threading.Lock()
+        self._left = threading.Condition(self._lock)
         self._clients: tuple[Client, ...] = ()
+        self._waiting: list[Client] = []  # oldest first
         self._threads: list[threading.Thread] = []
         self._stopping = threading.Event()
         self._connected = True
@@ -132,6 +140,10 @@ class FingertipServer:
         self._hub.close()
         self._accepting.join()
         self._socket.close()
+        with self._lock:
+            waiting = tuple(self._waiting)
+        for client in waiting:
+            client.close(now=True)
         for client in self._clients:
             client.close(now=self._ended is None)
         for thread in self._threads:
@@ -150,24 +162,32 @@ class FingertipServer:
                 _log.debug("not accepted: %s", error)
                 continue
             self._threads = [thread for thread in self._threads if thread.is_alive()]
-            if len(self._threads) >= MOST_CLIENTS:
-                connection.close()
-                _log.warning("more than %d clients: one was refused", MOST_CLIENTS)
-                continue
             connection.settimeout(None)
             client = Client(connection, f"{address[0]}:{address[1]}", self._buffer)
+            self._wait_for_line(client)
             thread = threading.Thread(
                 target=self._serve, args=(client,), name="lumitip-client", daemon=True
             )
             self._threads.append(thread)
             thread.start()
 
+    def _wait_for_line(self, client: Client) -> None:
+        """Note a new client; those that send no line take no room from others."""
+        with self._lock:
+            self._waiting.append(client)
+            oldest = self._waiting.pop(0) if len(self._waiting) > MOST_WAITING else None
+        if oldest:
+            _log.info("%s has sent no line and makes room for another", oldest.counts.name)
+            oldest.close(now=True)
+
     def _serve(self, client: Client) -> None:
         try:
             client.run(self._join)
         finally:
             with self._lock:
+                self._waiting = [one for one in self._waiting if one is not client]
                 self._clients = tuple(one for one in self._clients if one is not client)
+                self._left.notify_all()
             counts = client.counts
             _log.log(
                 logging.WARNING if counts.dropped else logging.INFO,
@@ -183,6 +203,13 @@ class FingertipServer:
                 "the token is missing or wrong. Open the address that `lumitip serve` has printed"
             )
         with self._lock:
+            if not self._left.wait_for(lambda: len(self._clients) < MOST_CLIENTS, _ROOM_S):
+                _log.warning("more than %d clients: one was refused", MOST_CLIENTS)
+                raise FullError(
+                    f"{MOST_CLIENTS} programs read {self.device_id} already, which is the limit. "
+                    "End one of them"
+                )
+            self._waiting = [one for one in self._waiting if one is not client]
             greeting = {
                 "device_id": self.device_id,
                 "connected": self._connected,

@@ -13,6 +13,7 @@ from lumitip.fingertip import Fingertip
 from lumitip.frame import Frame
 from lumitip.layout import Layout
 from lumitip.links.base import LinkEvent
+from lumitip.links.url import redacted
 from lumitip.processing import Contact, Processor
 from lumitip.session.hub import Hub
 from lumitip.view.estimating import EXPECTED, Estimates, Expected
@@ -53,7 +54,7 @@ class Finger:
         player: "Player | None" = None,
         expected: Expected = EXPECTED,
     ) -> None:
-        self.url = url
+        self.url = redacted(url)
         self.tip = tip
         self.player = player
         self.count = 0

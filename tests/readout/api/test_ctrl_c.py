@@ -62,10 +62,13 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _interrupted(
-    folder: Path, arguments: list[str], moment: float | threading.Event
+    folder: Path,
+    arguments: list[str],
+    moment: float | threading.Event,
+    number: int = signal.SIGINT,
 ) -> tuple[int, str]:
-    """Exit status and errors of a command; its whole process group gets SIGINT, as on Ctrl-C, some
-    seconds after it has begun or on an event."""
+    """Exit status and errors of a command; its whole process group gets SIGINT, as on Ctrl-C, or
+    another signal, some seconds after it has begun or on an event."""
     environment = os.environ | {"XDG_DATA_HOME": str(folder / "data")}
     with subprocess.Popen(
         [sys.executable, "-c", PROGRAM, *arguments],
@@ -83,7 +86,7 @@ def _interrupted(
                 assert moment.wait(60.0)
             else:
                 time.sleep(moment)
-            os.killpg(process.pid, signal.SIGINT)
+            os.killpg(process.pid, number)
             _, errors = process.communicate(timeout=120)
         finally:
             process.kill()
@@ -104,6 +107,14 @@ def test_ctrl_c_ends_a_command_in_silence(folder: Path, name: str, delay_s: floa
     else:
         # It may have ended before; a signal while Python itself ends is 130 for a shell too.
         assert status in (0, 1, 130, -signal.SIGINT), errors
+
+
+@pytest.mark.slow_cases
+@pytest.mark.parametrize("name", ["serve", "view", "tare", "twin"])
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("delay_s", [0.02, 2.0])
+def test_other_signals_do_the_same(folder: Path, name: str, number: int, delay_s: float) -> None:
+    assert _interrupted(folder, COMMANDS[name], delay_s, number) == (-number, "")
 
 
 @pytest.mark.slow_cases

@@ -157,6 +157,37 @@ def test_an_arm_and_its_fingers_are_one_robot(plugin: Any, make_robot: Make) -> 
     assert robot.get_observation()["lumitip_left.bits"] in (8.0, -1.0)
 
 
+def test_frames_that_come_while_the_arm_is_read_are_in_the_same_row(make_robot: Make) -> None:
+    with make_robot(robot=ARM, window=1) as robot:
+        tip, read = robot._group.tips["left"], robot.robot.get_observation
+        seen = []
+
+        def slow() -> Any:
+            first = tip.wait_latest(60.0).seq
+            while (last := tip.wait_latest(60.0).seq) < first + 40:
+                pass
+            seen.append((first, last))
+            return read()
+
+        robot.robot.get_observation = slow
+        values = robot.get_observation()
+    ((first, last),) = seen
+    assert last - 20 <= values["lumitip_left.seq"] > first  # its own thread may be a little late
+
+
+def test_the_first_row_has_a_frame(plugin: Any) -> None:  # noqa: ARG001
+    from lerobot_robot_lumitip.finger import Finger
+    from lerobot_robot_lumitip.windows import WindowFeatures
+
+    with Fingertip.open("twin://edge?rate=2") as tip:
+        while not tip.stats.received:
+            time.sleep(0.001)
+        features = WindowFeatures("left", 4, len(tip.layout), True)
+        with Finger.reading(features, tip, None, 60.0) as finger:
+            values = finger.observe(60.0)
+    assert values["lumitip_left.f3.back"] == 0.0 and values["lumitip_left.f3.c0"] >= 0.0
+
+
 @pytest.mark.parametrize("late", [False, True])
 def test_where_the_arm_fails_all_is_closed(make_robot: Make, tmp_path: Path, late: bool) -> None:
     fails = "disconnect" if late else "connect"

@@ -69,6 +69,7 @@ def test_contact_and_estimate_are_in_metres_and_radians(active: Any) -> None:
         names = list(estimate.parameters)
         size = len(names)
         assert size == len(fitted.parameters) and not any("_" in n for n in names)
+        assert {"transmittance", "gain"} <= set(names) <= set(vars(estimate)) | {"x", "y"}
         assert estimate.curvature == pytest.approx(fitted.curvature_per_mm * 1000)
         assert estimate.transmittance == pytest.approx(fitted.transmittance)
         spread = np.reshape(estimate.covariance, (size, size))

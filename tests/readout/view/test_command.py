@@ -57,6 +57,19 @@ def test_two_words_show_a_demonstration_and_ctrl_c_ends_it(tmp_path: Path) -> No
     assert reader.metadata.device_id == "twin:demo"
 
 
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_a_recording_of_the_view_whole(tmp_path: Path, number: int) -> None:
+    with running(tmp_path, "twin://demo?rate=300") as (process, url):
+        begin = urllib.request.Request(
+            f"{url}api/fingers/1/record", b'{"on": true}', {"Origin": url.rstrip("/")}
+        )
+        name = json.load(urllib.request.urlopen(begin, timeout=10))["file"]
+        time.sleep(0.5)
+        process.send_signal(number)
+        assert process.wait(timeout=20) == -number
+    assert list(Reader(tmp_path / "recordings" / name)), "it is whole, or this raises"
+
+
 def test_ctrl_c_before_the_server_listens_to_signals_ends_it_in_silence(tmp_path: Path) -> None:
     program = """
 import os, signal, uvicorn

@@ -11,6 +11,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from lumitip.errors import ViewError
+from lumitip.sharing import FingertipServer
 from lumitip.view.server import ViewServer
 
 Serve = Callable[..., ViewServer]
@@ -197,3 +198,12 @@ def test_a_place_beyond_numbers_is_refused(serve: Serve) -> None:
     answer = ask(server, "POST", "/api/fingers/2/player", told, origin=origin)
     assert answer.status == 409
     assert "a number is needed" in answer.text  # type: ignore[attr-defined]
+
+
+def test_the_token_of_a_shared_fingertip_is_not_shown(serve: Serve) -> None:
+    with FingertipServer("twin://disc", port=0, token="s3cret") as shared:
+        assert shared.address.endswith("?token=s3cret")
+        asked = ask(serve(shared.address), "GET", "/api/fingers")
+        (finger,) = json.loads(asked.text)  # type: ignore[attr-defined]
+        assert finger["url"] == shared.address.replace("s3cret", "***")
+    assert "s3cret" not in asked.text  # type: ignore[attr-defined]
