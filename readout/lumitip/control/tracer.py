@@ -17,7 +17,7 @@ _APPROACH_PER_S = 6.0
 _STEEPEST_DEG = 80.0  # a line across the way of the finger cannot be followed
 _CORNER_DEG = 30.0  # largest deviation of a corner from a right angle; flatter ones are curves
 _CORNER_MM = 13.0  # a vertex further from the middle is not seen by enough cells
-_BEARABLE = frozenset({"misfit", "unfinished", "ambiguous", "dead"})
+_BEARABLE = frozenset({"misfit", "unfinished", "bright", "ambiguous", "dead"})
 MOST_MISFIT = 60.0
 """Of the cells from the fitted line, root mean square (of 255): the published bent cable, which is
 fitted straight, has 18 to 29, a cloth with three dead cells at times more than 40, and another
@@ -28,7 +28,7 @@ def sight_of(seen: Contact | Estimate) -> Sight:
     """The line to follow in a contact or an estimate.
 
     The border of a corner is followed like an edge. An estimate with other flags than misfit,
-    unfinished, ambiguous and dead, or whose cells are beyond `MOST_MISFIT`, has no line.
+    unfinished, bright, ambiguous and dead, or whose cells are beyond `MOST_MISFIT`, has no line.
 
     Raises:
         ControlError: if `seen` is neither.

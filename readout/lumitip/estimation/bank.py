@@ -19,7 +19,7 @@ _FEW = 400
 _LIT, _DARK = 0.8, (0.1, 0.25)
 """Shares of cells below the light beside an object, and below that under it."""
 _OFF = 0.35  # share of light by which a cell disagrees with a pose
-_ELSEWHERE = 2.0  # distance beyond which a pose is at another place
+_ELSEWHERE = 1.4  # distance beyond which a pose is at another place
 _TINY = 1e-6
 _AT_ONCE = 1 << 16  # shares that are looked up together, which takes a few MB for each 10,000
 _LEAST = 0.02  # root mean square share of light below which a template is left out

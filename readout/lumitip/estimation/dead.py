@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from lumitip.estimation.bank import Bank
-from lumitip.estimation.fit import RIVAL, Fit, Frame, doubtful, fit
+from lumitip.estimation.fit import RIVAL, Fit, Frame, doubtful, fit, poses_of
 from lumitip.estimation.shapes import Shape
 from lumitip.grid import Floats
 
@@ -45,7 +45,7 @@ def without_dead(
         return None
     best = min(tried, key=_cost)
     near = [each for each in tried if _cost(each) < _cost(best) + RIVAL]
-    return replace(best, ambiguous=bool(bank.elsewhere(best, near)))
+    return replace(best, rivals=poses_of(bank.elsewhere(best, near)))
 
 
 def _cost(found: Fit) -> float:

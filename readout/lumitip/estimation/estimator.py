@@ -2,7 +2,7 @@
 
 import math
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +20,7 @@ from lumitip.estimation.estimate import (
     without_contact,
 )
 from lumitip.estimation.fit import ANGLE_SD_DEG, OFFSET_SD_MM, Fit, Frame, drifting, likely
+from lumitip.estimation.last import Last, after
 from lumitip.estimation.search import ALPHA_SD, BENT, GAP_SD_MM, Search
 from lumitip.grid import Floats, collinear
 from lumitip.layout import Layout, Optics
@@ -41,7 +42,7 @@ HUBER = 3.0
 """Standard deviations beyond which the loss grows linearly."""
 LEAST_CELLS = 4  # fewer do not show a line
 _BLURRED = np.array([np.radians(ANGLE_SD_DEG), OFFSET_SD_MM])
-_BEARABLE_COUNTS = dict.fromkeys(KINDS, 0.5 * MISFIT_COUNTS) | {BENT: 0.25 * MISFIT_COUNTS}
+_MOST_COUNTS = dict.fromkeys(KINDS, 0.5 * MISFIT_COUNTS) | {BENT: 0.25 * MISFIT_COUNTS}
 _END_COUNTS = 3.0  # from an end of the scale
 _SAME = 0.05  # share of light by which a dead cell may change
 _WORSE = 1.3  # times the least misfit since the last search, beyond which a tracker searches again
@@ -112,7 +113,7 @@ class PoseEstimator:
         twin = Twin(layout, self.model)
         self._search = Search(twin, *search_settings)
         self._tracking = tracking
-        self._last: _Last | None = None
+        self._last: Last | None = None
         steps = np.arange(0.0, FULL + 1.0)[:, None] * (twin.empty / FULL)
         self._light = drive_of_values(steps, self.model) / twin.drive
         self._rise = np.gradient(self._light, axis=0)
@@ -152,7 +153,7 @@ class PoseEstimator:
         dead = usable & (found.frame.scale == 0.0)
         flags = ("dead",) if dead.any() else ()
         estimate = report(shape, free, uncertain, self._search.reach_mm, self._mirrored, flags)
-        self._remember(name, found, estimate, dead)
+        self._last = after(self._last, name, found, estimate, dead) if self._tracking else None
         return estimate
 
     def prepare(self, *kinds: str) -> "PoseEstimator":
@@ -172,16 +173,6 @@ class PoseEstimator:
         for kind in kinds or KINDS:
             self._search.bank(kind)
         return self
-
-    def _remember(self, name: str, found: Fit, estimate: Estimate, dead: NDArray[np.bool_]) -> None:
-        """Start the next frame from this fit, unless the fit failed."""
-        # The fit of a bend converges over some frames, that of a straight line at once.
-        bearable = {"misfit", "ambiguous", "dead", *(["unfinished"] if name == BENT else [])}
-        fine = self._tracking and bearable.issuperset(estimate.flags)
-        # Later frames are compared with the least misfit since the last search, so that a bend does
-        # not raise the limit for a line that is straight again.
-        misfit = min(self._last.misfit_counts if self._last else math.inf, estimate.rms_counts)
-        self._last = _Last(name, found.pose, misfit, dead, found.frame.light) if fine else None
 
     def fitted(self, values: ArrayLike, kind: str, free: bool = False) -> Fit:
         """The fit of a kind with the expected optics.
@@ -248,8 +239,8 @@ class PoseEstimator:
         if last is not None and kind in (None, search.shape(last.name).kind):
             same = np.abs(frame.light - last.light) < _SAME
             alive = frame.without(last.dead & same)
-            followed = search.near(last.name, last.pose, alive)
-            bearable = max(_BEARABLE_COUNTS[last.name], _WORSE * last.misfit_counts)
+            followed = search.near(last.name, last.pose, alive, last.rivals)
+            bearable = max(_MOST_COUNTS[last.name], _WORSE * last.misfit_counts)
             if rms_counts(followed) < bearable:
                 return last.name, followed
             self._last = None
@@ -257,21 +248,6 @@ class PoseEstimator:
                 return search.again(last.name, last.pose, followed, alive)
         self._last = None
         return (kind, search.best(kind, frame)) if kind else search.decided(frame)
-
-
-@dataclass(frozen=True, eq=False)
-class _Last:
-    """What a tracker knows of the frame before."""
-
-    name: str
-    """Of the shape."""
-    pose: Floats
-    misfit_counts: float
-    """Least misfit since the last search."""
-    dead: NDArray[np.bool_]
-    """Cells that were left out although they had a value."""
-    light: Floats
-    """What each cell saw: a dead one sees the same in every frame."""
 
 
 def _known(kind: str) -> None:

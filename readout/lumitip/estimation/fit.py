@@ -74,8 +74,8 @@ class Fit:
     converged: bool
     drifts: int = 0
     """Number of drifts of the optics in the pose."""
-    ambiguous: bool = False
-    """Whether another line explains the frame nearly as well."""
+    rivals: tuple[Floats, ...] = ()
+    """Poses of other lines that explain the frame nearly as well."""
 
 
 def fit(shape: Shape, start: Floats, frame: Frame, rounds: int = ROUNDS) -> Fit:
@@ -150,6 +150,11 @@ def bounded(found: Sequence[Fit]) -> Floats:
     beyond = np.maximum(within * (2.0 * size - within) - _WILD, 0.0).sum(axis=1)
     losses: Floats = np.array([each.cost for each in found]) - beyond
     return losses
+
+
+def poses_of(found: Sequence[Fit]) -> tuple[Floats, ...]:
+    """The poses of some fits."""
+    return tuple(each.pose for each in found)
 
 
 def doubtful(found: Fit) -> bool:

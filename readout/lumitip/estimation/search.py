@@ -14,8 +14,9 @@ import numpy as np
 from lumitip.estimation.bank import Bank, corners, lines
 from lumitip.estimation.dead import without_dead
 from lumitip.estimation.estimate import KINDS, rms_counts
-from lumitip.estimation.fit import RIVAL, Fit, Frame, bounded, doubtful, fit, fits
+from lumitip.estimation.fit import RIVAL, Fit, Frame, bounded, doubtful, fit, fits, poses_of
 from lumitip.estimation.lookup import Lookup, between_borders
+from lumitip.estimation.optics import at_drift, drifted
 from lumitip.estimation.shapes import Bent, Cable, Cells, Corner, Edge, Shape
 from lumitip.grid import Floats
 from lumitip.twin import LineTable, Model, Twin
@@ -27,9 +28,9 @@ LOOSE = 0.06
 """Uncertain share of a cell's light on a fingertip that differs from the expected one."""
 BENT = "bent"
 """A cable along an arc, which a tracker may find after a straight one."""
-_LEAST_GAP_MM = 0.5
 _BENDS_PER_MM = (-1.0 / 60.0, 0.0, 1.0 / 60.0)  # starts of the fit of a bent cable
 _STARTS = 8  # poses of the bank that are then tried
+_REFUTED = 15.0  # loss behind a tracked line, beyond which a rival of it is dropped
 _GLANCE, _LOOK = 2, 5  # rounds of all starts, and of the best of them
 _BEHIND = 20.0  # loss behind the best, beyond which a start is dropped
 _HOPELESS = 2.5  # times the residual of the best bank, beyond which a kind is not fitted
@@ -50,7 +51,7 @@ class Search:
             alpha_sd: standard deviation of the scattered share; 0 if it is known.
         """
         self._twin, self._diameter_mm = twin, diameter_mm
-        self._drifted = _drifted(twin.model, gap_sd_mm, alpha_sd)
+        self._drifted = drifted(twin.model, gap_sd_mm, alpha_sd)
         self.drifts = len(self._drifted)
         """Number of uncertain parameters of the optics."""
         self._cells = Cells(twin.layout.x_mm, twin.layout.y_mm)
@@ -76,7 +77,10 @@ class Search:
     def _best(self, kind: str, frame: Frame, pose: Floats) -> Fit:
         """The best fit of a kind to all cells, from the best pose of the bank."""
         found = self.plain(kind, pose, frame)
-        return self._loose(kind, frame, found) if doubtful(found) else found
+        if doubtful(found):
+            return self._loose(kind, frame, found)
+        # Cells see little of a thin cable: one elsewhere may look much the same.
+        return self._of_several(kind, frame, found) if kind == "cable" else found
 
     def alive(self, kind: str, found: Fit) -> Fit:
         """A fit to all cells or, if that is bad, without a few that nothing explains."""
@@ -95,19 +99,26 @@ class Search:
                 closest poses.
             before: pose of the frame before, which decides between similar fits.
         """
-        shape, loose = self.shape(kind), frame.looser(LOOSE)
-        starts = self.bank(kind).closest(loose.light, loose.scale, _STARTS)
-        poses = [self._full_pose(kind, pose, frame, self.drifts) for pose in starts]
-        tried = fits(shape, np.array(poses), loose, _GLANCE)
-        tried.append(self.loosely(kind, plain, frame))
-        looked = fits(shape, self._kept(tried), loose, _LOOK)
-        losses, bank = bounded(looked), self.bank(kind)
+        loose = frame.looser(LOOSE)
+        return self._of_several(kind, loose, self.loosely(kind, plain, frame), before)
+
+    def _of_several(self, kind: str, frame: Frame, one: Fit, before: Floats | None = None) -> Fit:
+        """The best of the fits from the closest poses of the bank and of another one, with the
+        optics as free as in that, and its rivals."""
+        shape, bank = self.shape(kind), self.bank(kind)
+        starts = bank.closest(frame.light, frame.scale, _STARTS)
+        poses = [self._full_pose(kind, pose, frame, one.drifts) for pose in starts]
+        tried = [*fits(shape, np.array(poses), frame, _GLANCE), one]
+        looked = fits(shape, self._kept(tried), frame, _LOOK)
+        losses = bounded(looked)
         first = looked[int(losses.argmin())]
         near = losses < losses.min() + RIVAL
         rivals = bank.elsewhere(first, [f for f, is_so in zip(looked, near, strict=True) if is_so])
         if before is not None:
-            first = min([first, *rivals], key=lambda f: bank.distance(f.pose, before))
-        return replace(fit(shape, first.pose, loose), ambiguous=bool(rivals))
+            likely = [first, *rivals]
+            first = min(likely, key=lambda f: bank.distance(f.pose, before))
+            rivals = bank.elsewhere(first, likely)
+        return replace(fit(shape, first.pose, frame), rivals=poses_of(rivals))
 
     def decided(self, frame: Frame) -> tuple[str, Fit]:
         """The kind that explains a frame best, and its fit; an edge is preferred."""
@@ -186,11 +197,27 @@ class Search:
             return BENT, bent
         return other if other[0] == BENT else (other[0], self.alive(*other))
 
-    def near(self, kind: str, pose: Floats, frame: Frame) -> Fit:
-        """The fit from the pose of another frame, with free optics if they were free there."""
+    def near(self, kind: str, pose: Floats, frame: Frame, rivals: tuple[Floats, ...] = ()) -> Fit:
+        """The fit from the pose of another frame, with free optics if they were free there.
+
+        Args:
+            kind: of the object.
+            pose: in the other frame.
+            frame: the values.
+            rivals: of the pose there. They are followed too until the frames refute them, or one
+                of them refutes the pose.
+        """
         shape = self.shape(kind)
         free = pose.size > len(shape.names) + 2
-        return fit(shape, pose, frame.looser(LOOSE) if free else frame)
+        frame = frame.looser(LOOSE) if free else frame
+        if not rivals:
+            return fit(shape, pose, frame)
+        followed = fits(shape, np.array([pose, *rivals]), frame)
+        losses = bounded(followed)
+        at = 0 if losses[0] < losses.min() + RIVAL else int(losses.argmin())
+        left = [f for f, loss in zip(followed, losses, strict=True) if loss < losses[at] + _REFUTED]
+        others = self.bank(shape.kind).elsewhere(followed[at], left)
+        return replace(followed[at], rivals=poses_of(others))
 
     def loosely(self, kind: str, found: Fit, frame: Frame) -> Fit:
         """The same fit with free optics and uncertain light, to compare fits of several kinds."""
@@ -215,14 +242,7 @@ class Search:
 
     def optics_at(self, drift: Floats) -> Model:
         """Optics of a drift, shape `(drifts,)`."""
-        model = self._twin.model
-        steps = [
-            (other.gap_mm - model.gap_mm, other.alpha - model.alpha) for other in self._drifted
-        ]
-        gap_mm, alpha = np.array([model.gap_mm, model.alpha]) + drift @ np.reshape(steps, (-1, 2))
-        return model.changed(
-            gap_mm=max(float(gap_mm), _LEAST_GAP_MM), alpha=min(max(float(alpha), 0.0), 1.0)
-        )
+        return at_drift(self._twin.model, self._drifted, drift)
 
     def shape(self, kind: str) -> Shape:
         """The shape of a kind of object."""
@@ -266,14 +286,3 @@ class Search:
         else:
             taken -= float(usable.min())
         return np.concatenate([pose, np.zeros(drifts), [light, taken]])
-
-
-def _drifted(model: Model, gap_sd_mm: float, alpha_sd: float) -> list[Model]:
-    """The model with one parameter changed at a time, by its standard deviation."""
-    models = []
-    if gap_sd_mm:
-        models.append(model.changed(gap_mm=model.gap_mm + gap_sd_mm))
-    if alpha_sd:
-        step = alpha_sd if model.alpha + alpha_sd <= 1.0 else -alpha_sd
-        models.append(model.changed(alpha=model.alpha + step))
-    return models

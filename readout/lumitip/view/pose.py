@@ -22,6 +22,7 @@ WORDS = {
     "weak": "weak: the cells hardly show this line",
     "astray": "astray: the fit left the fingertip",
     "unfinished": "unfinished: the fit did not converge",
+    "bright": "bright: more light than at the tare; tare again with nothing between the fingers",
     "ambiguous": "ambiguous: another line explains the cells nearly as well",
     "dead": "dead: found without cells {left_out}, which have no value or may be dead",
 }
