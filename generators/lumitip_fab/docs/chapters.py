@@ -20,6 +20,7 @@ from lumitip_fab.docs.casting import (
 )
 from lumitip_fab.docs.flange import flange_step
 from lumitip_fab.docs.front import WARM_UP_MIN, front
+from lumitip_fab.docs.measuring import measuring
 from lumitip_fab.docs.mounting import mounting
 from lumitip_fab.docs.orders import amount, money
 from lumitip_fab.docs.page import html_page
@@ -45,6 +46,7 @@ def manual_text(design: Design, files: Files) -> str:
     chapters = (
         front(design),
         _bought(design, files),
+        measuring(design),
         _boards(design, files),
         _printed(design, files),
         _wired(design, files),
@@ -212,14 +214,16 @@ def _printed(design: Design, files: Files) -> str:
     made = [line for line in lines if design.mask.route == "tpu" or "| `mask/" not in line]
     note = _included("\n".join(made))
     corners = design.fit_plate.corners
+    signs = _text("signs_corner" if corners else "signs_slice", off=_text("signs_off"))
+    holds = "pins and seat" if design.mount.pin_u_mm else "seat"
     return _text(
         "printed",
         note=note,
         moulds=heights(design),
         filaments=_filaments(design),
-        tried=_text("tried_corner" if corners else "tried_slice"),
-        tried_with="a finger bolt" + ", a board without wires" * bool(corners),
-        signs=_text("signs_corner" if corners else "signs_slice"),
+        tried=_text("tried_corner") * bool(corners) + _text("tried_slice", holds=holds),
+        tried_with="the gripper, a finger bolt" + ", a board without wires" * bool(corners),
+        signs=signs,
     )
 
 
