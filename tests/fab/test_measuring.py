@@ -12,6 +12,7 @@ from lumitip_fab.catalogue.grippers import ToolCoupling
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
+from lumitip_fab.design.boards import thickness_off_mm
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.docs.measuring import measuring
 from lumitip_fab.text import table_of
@@ -79,6 +80,26 @@ def test_an_origin_of_an_unknown_figure_is_rejected(inputs: dict[str, Input]) ->
         ToolCoupling.model_validate(values)
 
 
+@pytest.mark.parametrize("pcb_mm", [1.45, 1.75, 1.86])
+def test_a_pocket_follows_the_board_that_is_measured(written: Written, pcb_mm: float) -> None:
+    force = {"finger.rated_force_n": 35.0}
+    drawn, own = written(force), written({**force, "stack.pcb_mm": pcb_mm})
+    assert own.layout.design_hash == drawn.layout.design_hash
+    for measured, other in ((own, drawn), (drawn, own)):
+        stack = measured.stack
+        assert stack.rim_z_mm - stack.pocket_z_mm == pytest.approx(stack.pcb_mm)
+        assert (stack.silicone_mm, stack.floor_mm) == (
+            other.stack.silicone_mm,
+            other.stack.floor_mm,
+        )
+    assert own.mount.block_back_w_mm == drawn.mount.block_back_w_mm
+
+
+def test_boards_are_sold_thicker_and_thinner_than_drawn() -> None:
+    assert thickness_off_mm(1.6) == pytest.approx(0.16)
+    assert thickness_off_mm(0.8) == pytest.approx(0.1)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("preset", ["published", "flex", "wsg50"])
 def test_the_slice_is_tried_on_the_gripper_before_the_backings_are_printed(
@@ -88,6 +109,8 @@ def test_the_slice_is_tried_on_the_gripper_before_the_backings_are_printed(
     text = re.sub(r"<[^>]*>", "", (folder / HTML).read_text(encoding="utf-8"))
     words = " ".join(text.split())
     work = ["Measure your gripper", "for each PCB fab", "on the gripper: try its", "print the rest"]
+    measured = "as sold, 1.6 mm is 1.44 to 1.76 mm. Is one thicker than 1.65 mm" in words
+    assert measured == ("must not stand above it" in words) == (preset != "flex")
     assert sorted(work, key=words.index) == work
     seat = "pins and seat" if read_design(folder / "design.json").mount.pin_u_mm else "seat"
     assert f"try its {seat}." in words

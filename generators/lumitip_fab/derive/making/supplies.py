@@ -23,10 +23,9 @@ from lumitip_fab.design import (
     Point,
     Stack,
 )
+from lumitip_fab.design.boards import GLUE_FILM_MM
 from lumitip_fab.design.cabling import gripper_headers, plugged_headers, supplied_headers
 
-GLUE_FILM_MM = 0.1
-"""Thin film of glue between board and floor, or pad and plate (assumed)."""
 TAPE_MARGIN_MM = 5.0
 """Of the tape beyond a window, on each side."""
 KNOT_MM = 80.0
