@@ -14,6 +14,7 @@ from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.design.boards import thickness_off_mm
 from lumitip_fab.design.encoding import read_design
+from lumitip_fab.docs.front import front
 from lumitip_fab.docs.measuring import measuring
 from lumitip_fab.text import table_of
 
@@ -98,6 +99,14 @@ def test_a_pocket_follows_the_board_that_is_measured(written: Written, pcb_mm: f
 def test_boards_are_sold_thicker_and_thinner_than_drawn() -> None:
     assert thickness_off_mm(1.6) == pytest.approx(0.16)
     assert thickness_off_mm(0.8) == pytest.approx(0.1)
+
+
+def test_what_waits_has_the_adhesive_of_the_flaps_and_the_pin(written: Written) -> None:
+    begin = " ".join(front(written()).split())
+    waiting = begin.partition("Waiting takes longest: ")[2].partition(". Both")[0]
+    assert waiting.endswith("for the flaps' adhesive; meanwhile 24 h for the flange's pin")
+    assert waiting.count("24 h") == 4
+    assert "flange's pin" not in front(written({"flange.enabled": False}))
 
 
 @pytest.mark.slow
