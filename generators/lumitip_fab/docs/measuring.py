@@ -14,9 +14,9 @@ _NOT_PRINTED = {"force_n", "stroke_mm", "height_mm", "robot_mm", "iso"}
 def measuring(design: Design) -> str:
     """The step: each figure that is not sure, with what the design uses, and how to measure it."""
     mount = design.mount
-    places = [f"`[{mount.gripper}]` in `parts/grippers.toml`"] * bool(_of_gripper(design))
+    places = [f"`[{mount.gripper}]` of `grippers.toml`"] * bool(_of_gripper(design))
     for flange in design.flanges:
-        place = f'`["{flange.coupling}"]` in `parts/couplings.toml`'
+        place = f'`["{flange.coupling}"]` of `couplings.toml`'
         places += [place] * bool(_of_coupling(flange))
     return _text(
         "measured_first",
