@@ -46,6 +46,14 @@ def thickness_of_the_fabrication_note(files: Files) -> None:
     edit(files, "fabrication.txt", b"Thickness: 1.6 mm", b"Thickness: 1 mm")
 
 
+def thickness_without_a_tolerance(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"1\.6 mm, \S+ mm", b"1.6 mm")
+
+
+def wide_tolerance_of_the_thickness(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"\+/-\S+ mm", b"+/-0.3 mm")
+
+
 def size_of_the_fabrication_note(files: Files) -> None:
     edit(files, "fabrication.txt", rb"Size: \S+", b"Size: 40.00")
 
@@ -95,6 +103,8 @@ NOTE_DAMAGES: dict[Damage, set[str]] = {
     note_without_a_part: {"note"},
     note_of_an_assumed_rotation: {"assumed"},
     thickness_of_the_fabrication_note: {"fabrication"},
+    thickness_without_a_tolerance: {"fabrication"},
+    wide_tolerance_of_the_thickness: {"fabrication"},
     size_of_the_fabrication_note: {"fabrication"},
     track_of_the_fabrication_note: {"fabrication"},
     drill_of_the_fabrication_note: {"fabrication"},

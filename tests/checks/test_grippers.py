@@ -137,7 +137,7 @@ def test_the_fit_is_added_to_every_gap_and_moves_nothing_else(held_by: File) -> 
 
 def test_a_figure_is_unsure_unless_a_datasheet_or_a_measurement_gives_it(design_dir: Path) -> None:
     grippers = load(design_dir / "presets/published.toml").catalogue.grippers
-    assert grippers["robotiq_2f85"].unsure == ("force_n", "bolt", "seat_back_w_mm")
+    assert tuple(grippers["robotiq_2f85"].unsure) == ("force_n", "bolt", "seat_back_w_mm")
     assert {"bolt_w_mm", "pins", "pad_w_mm"} <= set(grippers["wsg50"].unsure)
     assert not {"stroke_mm", "bolt_spacing_mm"} & set(grippers["wsg50"].unsure)
 

@@ -28,7 +28,7 @@ def test_one_bolt_pulls_two_thirds_of_its_way_from_the_edge(mount: Mount) -> Non
 
 def test_a_seat_that_ends_before_the_block_pulls_the_bolt_harder(mount: Mount) -> None:
     assert mount.seat_back_w_mm == mount.block_back_w_mm  # of the catalogue, assumed
-    assert "seat_back_w_mm" in mount.unsure
+    assert "seat_back_w_mm" in {figure.name for figure in mount.unsure}
     short = designed_foot(replace(mount, seat_back_w_mm=mount.bolt_w_mm + 3.0))
     assert pull_n(40.0, 51.7, mount, short) == pytest.approx(40.0 * 51.7 / (2 / 3 * 3.0))
     long = designed_foot(replace(mount, seat_back_w_mm=mount.block_back_w_mm + 3.0))

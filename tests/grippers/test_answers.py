@@ -72,7 +72,7 @@ def test_an_entry_from_the_answers_is_that_gripper(fill: Any, config: Input) -> 
         )
         assert read.envelope.model_dump(exclude=own) == gripper.envelope.model_dump(exclude=own)
         assert (read.source, read.confidence) == ("measured with calipers by its user", "measured")
-        assert (read.unsure, read.title) == ((), "My jaw")
+        assert (read.unsure, read.title) == ({}, "My jaw")
 
 
 FAULTS: dict[str, tuple[dict[str, Any], str]] = {
@@ -119,7 +119,7 @@ def test_the_weakest_source_of_a_table_is_that_of_the_table(fill: Any, config: I
     assert "depth_mm = 2.6" in text
     file.write_text(text.replace("depth_mm = 2.6", f"depth_mm = {guess}"), encoding="utf-8")
     read = read_answers(file)
-    assert read.unsure == ("pins",)
+    assert list(read.unsure) == ["pins"]
     assert read.origin["pins"].source.endswith("; depth_mm: seen from outside")
     assert read.pins == jaw.pins
 

@@ -1,12 +1,11 @@
 """Catalogue entries of grippers and of the couplings between gripper and robot."""
 
-from collections.abc import Mapping
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
 from lumitip_fab.catalogue.controllers import OPEN, Signal
-from lumitip_fab.catalogue.record import Confidence, Entry, Length, Name, Offset, Sourced, Strict
+from lumitip_fab.catalogue.record import Length, Name, Offset, Sourced, Strict, Traced
 
 Screw = Annotated[str, Field(pattern=r"^M\d{1,2}(\.\d)?$")]
 
@@ -34,15 +33,6 @@ class Pins(Strict):
     round them."""
     depth_mm: Length
     """Depth of their holes."""
-
-
-class Origin(Strict):
-    """Source of a figure that the entry's `source` does not cover."""
-
-    source: str = Field(min_length=1)
-    """Source of the figure."""
-    confidence: Confidence
-    """Confidence in it."""
 
 
 class Envelope(Sourced):
@@ -82,9 +72,11 @@ class Envelope(Sourced):
         return self
 
 
-class Gripper(Entry):
+class Gripper(Traced):
     """Mounting geometry of a gripper; distances w are behind the plate's rim plane. Its bolts
     run along the finger, into the gripper."""
+
+    KIND: ClassVar = "a gripper"
 
     base: Name | None = None
     """Name of its bottom, as the entry of a coupling in `parts/couplings.toml` has it; left out, no
@@ -126,20 +118,6 @@ class Gripper(Entry):
     """The tapered seat, if the gripper has one."""
     envelope: Envelope
     """Its body, with a source of its own."""
-    origin: Mapping[str, Origin] = Field(default_factory=dict)
-    """Sources of single figures, where these differ from `source`."""
-
-    @property
-    def unsure(self) -> tuple[str, ...]:
-        """Names of the figures that neither a datasheet nor a measurement gives."""
-        known = [name for name in FIGURES if getattr(self, name) is not None]
-        trusted = ("datasheet", "measured")
-        return tuple(
-            name
-            for name in known
-            if (self.origin[name].confidence if name in self.origin else self.confidence)
-            not in trusted
-        )
 
     @model_validator(mode="after")
     def _seat_behind_bolts(self) -> Self:
@@ -152,22 +130,8 @@ class Gripper(Entry):
             )
         return self
 
-    @model_validator(mode="after")
-    def _origins_of_figures(self) -> Self:
-        unknown = sorted(set(self.origin) - set(FIGURES))
-        if unknown:
-            raise ValueError(
-                f"origin has {', '.join(unknown)}, which is not a figure of a gripper; the figures "
-                f"are {', '.join(FIGURES)}"
-            )
-        return self
 
-
-FIGURES = tuple(
-    name
-    for name in Gripper.model_fields
-    if name not in {"source", "confidence", "title", "base", "envelope", "origin"}
-)
+FIGURES = Gripper.figures()
 
 
 Place = Annotated[float, Field(ge=-200, le=200)]
@@ -197,9 +161,11 @@ class Contact(Strict):
         return self
 
 
-class ToolCoupling(Entry):
+class ToolCoupling(Traced):
     """A coupling with the robot's tool flange on its one side, by ISO 9409-1, and a centring
     recess, a locating pin and contacts on its other."""
+
+    KIND: ClassVar = "a coupling"
 
     base: Name
     """Name of the bottom of the grippers that stand on it, as their entries have it."""

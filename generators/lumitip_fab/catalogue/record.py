@@ -1,6 +1,7 @@
 """Base classes of catalogue records, and the types of their values."""
 
-from typing import Annotated, Literal, Self
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validator, model_validator
 
@@ -34,6 +35,8 @@ Gains = Annotated[tuple[_Gain, _Gain], AfterValidator(_ascending)]
 Voltages = Annotated[tuple[_Voltage, _Voltage], AfterValidator(_ascending)]
 Currents = Annotated[tuple[_Current, _Current], AfterValidator(_ascending)]
 Confidence = Literal["datasheet", "measured", "inferred", "assumed"]
+TRUSTED = ("datasheet", "measured")
+"""Levels of confidence by which a part is made without a try."""
 
 
 class Strict(BaseModel):
@@ -62,6 +65,43 @@ class Entry(Sourced):
 
     title: str = Field(default="", max_length=64, pattern=TITLE)
     """Title in manual, bill and drawings; by default the entry's own name."""
+
+
+class Origin(Sourced):
+    """Source of a figure that the entry's `source` does not cover."""
+
+
+class Traced(Entry):
+    """Base of an entry of which single figures have a source of their own."""
+
+    KIND: ClassVar = "an entry"
+    """Of what its figures are, for messages."""
+
+    origin: Mapping[str, Origin] = Field(default_factory=dict)
+    """Sources of single figures, where these differ from `source`."""
+
+    @classmethod
+    def figures(cls) -> tuple[str, ...]:
+        """Names of its figures that may have an origin."""
+        without = {*Traced.model_fields, "base", "envelope"}
+        return tuple(name for name in cls.model_fields if name not in without)
+
+    @property
+    def unsure(self) -> Mapping[str, Confidence]:
+        """Figures that neither a datasheet nor a measurement gives, and the confidence in each."""
+        known = [name for name in self.figures() if getattr(self, name) is not None]
+        levels = {name: self.origin.get(name, self).confidence for name in known}
+        return {name: level for name, level in levels.items() if level not in TRUSTED}
+
+    @model_validator(mode="after")
+    def _origins_of_figures(self) -> Self:
+        unknown = sorted(set(self.origin) - set(self.figures()))
+        if unknown:
+            raise ValueError(
+                f"origin has {', '.join(unknown)}, which is not a figure of {self.KIND}; the "
+                f"figures are {', '.join(self.figures())}"
+            )
+        return self
 
 
 class Ordered(Strict):

@@ -21,6 +21,7 @@ from lumitip_fab.checks.panel_read import read_panel
 from lumitip_fab.checks.readers.tables import unpacked
 from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design, Fab, Finger, Flexible
+from lumitip_fab.design.boards import thickness_off_mm
 from lumitip_fab.errors import OutputError
 
 READS = ("boards/*.kicad_pcb", "boards/*.zip", "boards/*.csv")
@@ -140,6 +141,8 @@ def _misordered(read: ReadBoard, note: str) -> Iterator[str]:
     if drills:
         figures["Smallest drill"] = (min(drills),)
     finish, flexible = read.of.finish, read.flexible
+    if not flexible:
+        figures["Thickness"] += (thickness_off_mm(read.board.thickness_mm),)
     copper_um = 1000 * flexible.copper_mm if flexible else finish.copper_um
     figures["Copper"] = (copper_um,)
     lines: dict[str, str] = dict(re.findall(r"^(.+?): (.+)$", note, re.MULTILINE))

@@ -63,6 +63,7 @@ from lumitip_fab.design.mount import (
     Nose,
     System,
     ToolContact,
+    Unsure,
 )
 from lumitip_fab.design.ordering import Bought, Fab, Pack, PartPrice, Purchase
 from lumitip_fab.design.panel import Panel, PanelRules

@@ -20,6 +20,16 @@ from lumitip_fab.catalogue.electronics import (
 from lumitip_fab.design.pcb import FINGER_FINISH, Finish, Tie
 from lumitip_fab.design.shape import Box, Point, Side
 
+GLUE_FILM_MM = 0.1
+"""Thin film of glue between board and floor, or pad and plate (assumed)."""
+_OFF_SHARE, _OFF_MM = 0.1, 0.1
+
+
+def thickness_off_mm(thickness_mm: float) -> float:
+    """How far a board of FR-4 is off its thickness as PCB fabs sell it: ±10 % from 1 mm on, ±0.1 mm
+    below (jlcpcb.com, capabilities)."""
+    return _OFF_SHARE * thickness_mm if thickness_mm >= 1.0 else _OFF_MM
+
 
 @dataclass(frozen=True)
 class Grid:

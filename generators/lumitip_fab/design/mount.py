@@ -11,6 +11,17 @@ _FLARE_THINS = 0.4  # of its depth at the ramp, where a flare ends: the bending 
 
 
 @dataclass(frozen=True)
+class Unsure:
+    """A figure of a catalogue entry that neither a datasheet nor a measurement gives."""
+
+    name: str
+    """Its name in the entry, with that of its table: `pins.hole_mm`."""
+    value: str
+    """Its value in the entry, with its unit."""
+    confidence: str
+
+
+@dataclass(frozen=True)
 class Nose:
     """The tapered end of the mounting block; see `Mount` for the frame."""
 
@@ -70,8 +81,8 @@ class Mount:
     """For ties round the cable, beside the block; none where it leaves no room."""
     force_n: float
     """Greatest force of the gripper; 0 where it is not known."""
-    unsure: tuple[str, ...]
-    """Figures of the gripper that neither a datasheet nor a measurement gives."""
+    unsure: tuple[Unsure, ...]
+    """Figures of the gripper's entry to measure."""
 
     @property
     def flare_end_mm(self) -> float:
@@ -260,6 +271,8 @@ class Flange:
     """Where the parts meet."""
     web_mm: float
     """Thickness of the upper part under the gripper's recess."""
+    unsure: tuple[Unsure, ...]
+    """Figures of the coupling's entry to measure."""
 
     @property
     def top_z_mm(self) -> float:

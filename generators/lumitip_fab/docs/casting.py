@@ -160,7 +160,8 @@ def _held(design: Design, fingers: tuple[Finger, ...]) -> str:
         )
         tape = f"{mould.tape}, "
     name = "pocket" if sunk else "plate"
-    glue = {"glue": design.strength.glue, "glue_hard_h": mould.glue_hard_h}
+    groove_mm = design.board.pocket_clearance_mm + design.board.roof_mm
+    glue = {"glue": design.strength.glue, "glue_hard_h": mould.glue_hard_h, "groove_mm": groove_mm}
     return _text(name, taped=taped, tape=tape, **glue)
 
 

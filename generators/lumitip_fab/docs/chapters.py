@@ -1,15 +1,14 @@
 """The manual: its own chapters and the notes of the parts, as Markdown, HTML and PDF."""
 
 import re
-from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import count
 from typing import Any
 
-from lumitip_fab.design import Design, Finger, Packages
+from lumitip_fab.design import Design
 from lumitip_fab.design.cabling import awg, supplied_headers
-from lumitip_fab.docs.bill import TESTED
+from lumitip_fab.docs.boards import boards
 from lumitip_fab.docs.bring_up import first_test
 from lumitip_fab.docs.casting import (
     amounts_of_both,
@@ -20,10 +19,10 @@ from lumitip_fab.docs.casting import (
 )
 from lumitip_fab.docs.flange import flange_step
 from lumitip_fab.docs.front import WARM_UP_MIN, front
+from lumitip_fab.docs.measuring import measuring
 from lumitip_fab.docs.mounting import mounting
 from lumitip_fab.docs.orders import amount, money
 from lumitip_fab.docs.page import html_page
-from lumitip_fab.docs.protection import protection_note
 from lumitip_fab.docs.sheet import pdf_sheets
 from lumitip_fab.docs.spec_circuit import pulled_up
 from lumitip_fab.docs.wiring import listed
@@ -35,7 +34,6 @@ RUN_MIN, ACCEPT_MIN = 15, 10
 """How long calibration takes, and the test with the gauge card (assumed)."""
 WEAR_GRASPS = 100
 """After about so many grasps the published sensor's silicone had worn above the LEDs."""
-_PROBE_V = 0.15  # less than at the working current: a diode test drives about 1 mA
 _STEP = re.compile(r"^## #\. ", re.MULTILINE)
 _HEADING = re.compile(r"^(#+) ", re.MULTILINE)
 
@@ -45,7 +43,8 @@ def manual_text(design: Design, files: Files) -> str:
     chapters = (
         front(design),
         _bought(design, files),
-        _boards(design, files),
+        measuring(design),
+        boards(design, files),
         _printed(design, files),
         _wired(design, files),
         first_test(design),
@@ -105,89 +104,6 @@ def _how_much(line: dict[str, Any]) -> str:
     return amount(line["quantity"]) + unit
 
 
-def _boards(design: Design, files: Files) -> str:
-    """Ordering, panels, soldering, measuring."""
-    auxiliary = design.auxiliary_boards
-    names = ("emitter", "receiver", *(board.name for board in auxiliary))
-    behind = any(part.side == "back" for part in design.emitter.parts)
-    backs = ["emitter"] if behind else []
-    backs += [board.name for board in auxiliary if any(d.side == "back" for d in board.components)]
-    pictures = [
-        f"![The {name} board, {side}](boards/{name}/{name}_{side}.png)"
-        for side, shown in (("front", names), ("back", backs))
-        for name in shown
-        if files.like(f"boards/{name}/{name}_{side}.png")
-    ]
-    reflowed = _reflowed(design)
-    return _text(
-        "boards",
-        names=listed(list(names)),
-        panels=_panels(design),
-        solder=design.heat_steps["solder"],
-        reflowed=reflowed,
-        hot_air=", hot air, flux" * bool(reflowed),
-        breaking=", pliers, small files, safety glasses" * bool(design.panels),
-        polarity=polarity_test(design.packages, design.fingers),
-        protection=protection_note(design),
-        led=design.packages.led,
-        detector=design.packages.photodetector,
-        unplaced=_unplaced(files),
-        last=", then the string resistors on the back of the emitter" if behind else "",
-        pictures="\n".join(pictures),
-    )
-
-
-def _unplaced(files: Files) -> str:
-    """Parts that the PCB fab which mounts parts does not know by a number; empty without any."""
-    rows = [
-        row
-        for path in files.like("boards/*/*.kicad_pcb")
-        for row in files.facts(path).get("parts", ())
-        if not row["lcsc"]
-    ]
-    parts = dict.fromkeys(
-        f"{row['manufacturer']} {row['part']}"
-        + f" ({row['value']})" * (row["value"] != row["part"])
-        for row in rows
-    )
-    return _text("unplaced", parts=as_written(listed(list(parts)))) + "\n" if parts else ""
-
-
-def _panels(design: Design) -> str:
-    """Panels to order instead of boards, for a fab that assembles them."""
-    if not design.panels:
-        return ""
-    listed = "\n".join(
-        f"- `boards/{panel.name}/order/`: {len(panel.copies)} times {panel.board}"
-        for panel in design.panels
-    )
-    return _text("panels", listed=listed, board=design.board)
-
-
-def _reflowed(design: Design) -> str:
-    """How a part is soldered whose pads an iron does not reach: a module's."""
-    components = (part for board in design.auxiliary_boards for part in board.components)
-    return "".join(_text("reflowed", part=part) for part in components if part.kind == "module")
-
-
-def polarity_test(packages: Packages, fingers: tuple[Finger, ...]) -> str:
-    """The test with a multimeter of parts whose marked terminal is not known; empty where the
-    polarity of both kinds of part is known."""
-    led, detector = packages.led, packages.photodetector
-    tests = []
-    if not led.mark_is_known:
-        probed_v = led.forward_voltage_v - _PROBE_V
-        name = as_written(packages.led_name)
-        tests.append(_text("led", part=led, name=name, probed_v=probed_v))
-    if not detector.mark_is_known:
-        name = as_written(packages.photodetector_name)
-        tests.append(_text("photodetector", part=detector, name=name))
-    parts = Counter(part.kind for finger in fingers for part in finger.parts)
-    counted = f"{parts['led']} LEDs, {parts['photodetector']} photodetectors"
-    tests_text = "".join(tests)
-    return _text("polarity", tests=tests_text, counted=counted, tested=TESTED) if tests else ""
-
-
 def _wired(design: Design, files: Files) -> str:
     sections = sorted({cable.section_mm2 for cable in design.cabling.cables})
     wires = [f"stranded wire of {mm2:g} mm² (AWG {awg(mm2)})" for mm2 in sections]
@@ -212,14 +128,16 @@ def _printed(design: Design, files: Files) -> str:
     made = [line for line in lines if design.mask.route == "tpu" or "| `mask/" not in line]
     note = _included("\n".join(made))
     corners = design.fit_plate.corners
+    signs = _text("signs_corner" if corners else "signs_slice", off=_text("signs_off"))
+    holds = "pins and seat" if design.mount.pin_u_mm else "seat"
     return _text(
         "printed",
         note=note,
         moulds=heights(design),
         filaments=_filaments(design),
-        tried=_text("tried_corner" if corners else "tried_slice"),
-        tried_with="a finger bolt" + ", a board without wires" * bool(corners),
-        signs=_text("signs_corner" if corners else "signs_slice"),
+        tried=_text("tried_corner") * bool(corners) + _text("tried_slice", holds=holds),
+        tried_with="the gripper, a finger bolt" + ", a board without wires" * bool(corners),
+        signs=signs,
     )
 
 

@@ -31,7 +31,7 @@ def front(design: Design) -> str:
         nozzle_mm=design.slicing.nozzle_mm,
         board_tools=_board_tools(design),
         mask_tools=_text(f"tools_{design.mask.route}", soften_c=design.mask.soften_c),
-        waiting=_waiting(design.mould),
+        waiting=_waiting(design.mould) + _beside(design),
         heated="\n".join(map(_heated, design.heat)),
     )
 
@@ -59,7 +59,13 @@ def _waiting(mould: Mould) -> str:
     """Hours that something hardens, one after the other."""
     glued = [f"{mould.glue_hard_h:g} h for the glue"] if mould.glue_hard_h else []
     cures = [f"{mould.cure_h:g} h for {what}" for what in ("a trial of the silicone", "the skin")]
-    return ", then ".join(glued + cures)
+    return ", then ".join([*glued, *cures, "what its label says for the flaps' adhesive"])
+
+
+def _beside(design: Design) -> str:
+    """How long the flange's pin hardens, which is glued while something else does."""
+    hours = f"{design.mould.glue_hard_h:g} h" if design.mould.glue_hard_h else "some hours"
+    return f"; meanwhile {hours} for the flange's pin" if design.flanges else ""
 
 
 def _keys(design: Design) -> str:

@@ -288,7 +288,8 @@ def _trusted(design: Design) -> str:
     """How far the gripper's figures go, and what to do about those that go not far enough."""
     if not design.mount.unsure:
         return "every figure from a datasheet or a measurement: parts/grippers.toml"
+    names = dict.fromkeys(figure.name.partition(".")[0] for figure in design.mount.unsure)
     return (
-        f"neither datasheet nor measurement gives {', '.join(design.mount.unsure)}: print the "
+        f"neither datasheet nor measurement gives {', '.join(names)}: print the "
         "coupling alone and try it first (docs/making.md)"
     )

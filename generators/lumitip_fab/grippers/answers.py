@@ -9,7 +9,8 @@ from typing import Any
 import tomli_w
 from pydantic import ValidationError
 
-from lumitip_fab.catalogue.grippers import FIGURES, Gripper, Origin
+from lumitip_fab.catalogue.grippers import FIGURES, Gripper
+from lumitip_fab.catalogue.record import Origin
 from lumitip_fab.config.messages import problems_of, shown_path
 from lumitip_fab.config.source import Source, read_toml
 from lumitip_fab.errors import InputError, Problem

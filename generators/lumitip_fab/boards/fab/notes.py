@@ -12,6 +12,7 @@ from lumitip_fab.boards.fab.order import (
 from lumitip_fab.boards.model import BoardModel, Placement
 from lumitip_fab.boards.placed import pad_at, placed_pads
 from lumitip_fab.design import Fab, Flexible, Led, Panel, Photodetector
+from lumitip_fab.design.boards import thickness_off_mm
 from lumitip_fab.text import passage
 
 STOP_FILE = "STOP_READ_FIRST.txt"
@@ -47,7 +48,7 @@ def fabrication_note(model: BoardModel) -> bytes:
         "Copper layers: 2",
         f"Material: {'polyimide, see the assembly note' if flexible else 'FR-4, Tg 130 or more'}",
         f"Size: {width:.2f} x {length:.2f} mm",
-        f"Thickness: {board.thickness_mm:g} mm",
+        f"Thickness: {board.thickness_mm:g} mm{_off(board)}",
         f"Copper: {flexible.copper_mm * 1000 if flexible else finish.copper_um:g} um on each side",
         f"Surface: {finish.surface}",
         f"{'Coverlay' if flexible else 'Solder mask'}: {finish.mask}, on both sides",
@@ -58,6 +59,11 @@ def fabrication_note(model: BoardModel) -> bytes:
     lines += ["Vias: covered by the mask, not filled", "Electrical test: every board"]
     lines += ["", f"Why {finish.mask}: {finish.reason}."] if finish.reason else []
     return "".join(f"{line}\n" for line in lines).encode()
+
+
+def _off(board: Placement) -> str:
+    """The tolerance of a rigid board's thickness; a finger's board lies in a pocket."""
+    return "" if board.flexible else f", +/-{thickness_off_mm(board.thickness_mm):.2g} mm"
 
 
 def panel_note(panel: Panel) -> str:

@@ -23,10 +23,9 @@ from lumitip_fab.design import (
     Point,
     Stack,
 )
+from lumitip_fab.design.boards import GLUE_FILM_MM
 from lumitip_fab.design.cabling import gripper_headers, plugged_headers, supplied_headers
 
-GLUE_FILM_MM = 0.1
-"""Thin film of glue between board and floor, or pad and plate (assumed)."""
 TAPE_MARGIN_MM = 5.0
 """Of the tape beyond a window, on each side."""
 KNOT_MM = 80.0
@@ -42,6 +41,12 @@ TIE_MM = 200.0
 """Length of a cable tie: the product in `packs.toml`."""
 CARRIER_MM = 300.0
 """Of tape, that holds a mask's film on the paper that carries it through the printer."""
+FREE_END_MM = 30.0
+"""Of tape, over the end of a wire that stays free in the first test."""
+HELD_TURNS = 3
+"""Of tape, round a finger, that hold its flaps down while their adhesive hardens."""
+INSERT_MM = 120.0
+"""Of tape, on the drawing by which a smooth film is cut."""
 A4_MM = (210.0, 297.0)
 CUT_MM = 5.0
 """Of a sheet, from one insert to the next."""
@@ -152,8 +157,15 @@ def _cast(config: Input, of: Assembled) -> Iterator[Used]:
     uses += ["windows on the back while casting"] * bool(taped)
     carried = len(of.fingers) * CARRIER_MM if p.mask.route == "film" else 0.0
     uses += ["films on their carriers"] * bool(carried)
-    if uses:
-        yield Used(p.mould.tape, ", ".join(uses), (taped + down + carried) / 1000, "m")
+    cut = len(of.fingers) * INSERT_MM * len(of.inserts)
+    uses += ["smooth films on their drawing"] * bool(cut)
+    wires = [wire for cable in of.cabling.cables for wire in cable.wires]
+    free = FREE_END_MM * sum(w.start.board == "breakout" or w.end.board == "supply" for w in wires)
+    uses += ["free wires in the first test"] * bool(free)
+    held = len(of.fingers) * HELD_TURNS * 2 * (widest + of.stack.thickness_mm)
+    uses += ["flaps while their adhesive hardens"]
+    tape_mm = taped + down + carried + cut + free + held
+    yield Used(p.mould.tape, ", ".join(uses), tape_mm / 1000, "m")
     if primer := config.parts.mould.primer:
         cm2 = sum(Polygon(of.outline.polygon()).area for _ in of.fingers) / 100
         yield Used(p.mould.primer, "front of both fingers", cm2 / primer.coverage_cm2_ml, "mL")
@@ -170,13 +182,16 @@ def sheets(insert: Insert) -> int:
 
 
 def _glue_mm3(of: Assembled) -> float:
-    """A film under each board and the slit round it, or a film under each pad."""
+    """A film under each board, the slit round it and the wedge beyond its tip, where the pocket is
+    wider at the rim; or a film under each pad."""
     if of.interfaces:
         box = of.interfaces[0].box
         return len(of.fingers) * box.width_mm * box.length_mm * GLUE_FILM_MM
     box, gap = of.board.box, of.board.pocket_clearance_mm
-    slit = 2 * (box.width_mm + box.length_mm) * gap * of.stack.pcb_mm
-    return len(of.fingers) * (box.width_mm * box.length_mm * GLUE_FILM_MM + slit)
+    deep = of.stack.pcb_mm
+    slit = 2 * (box.width_mm + box.length_mm) * gap * deep
+    wedge = of.board.pocket.width_mm * of.board.roof_mm * deep / 2
+    return len(of.fingers) * (box.width_mm * box.length_mm * GLUE_FILM_MM + slit + wedge)
 
 
 def _windows(finger: Finger, of: Assembled) -> Iterator[Point]:

@@ -6,6 +6,7 @@ from lumitip_fab.derive.finger.stack import held_by, stiff_mm
 from lumitip_fab.derive.making.fits import Drawn
 from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
 from lumitip_fab.derive.mount.rules import refuse_flange
+from lumitip_fab.derive.mount.unsure import unsure_figures
 from lumitip_fab.design import (
     AuxiliaryBoard,
     Box,
@@ -103,6 +104,7 @@ def derive_flange_body(
         screw_head_mm=screw.countersunk_mm + SINK_PLAY_MM,
         split_z_mm=split_z,
         web_mm=p.web_mm,
+        unsure=unsure_figures(coupling),
     )
     refuse_flange(config, flange, faults)
     return (flange,)

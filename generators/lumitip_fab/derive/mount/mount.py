@@ -19,6 +19,7 @@ from lumitip_fab.derive.making.fits import derive_fits
 from lumitip_fab.derive.mount.fasteners import bolt_length_mm
 from lumitip_fab.derive.mount.rules import refuse_block, refuse_place
 from lumitip_fab.derive.mount.tie_lugs import finger_lugs
+from lumitip_fab.derive.mount.unsure import unsure_figures
 from lumitip_fab.design import Closing, Letter, Mould, Mount, Outline, Stack
 
 LETTER_MARGIN_MM = 0.6  # or a printed line, to the bed, and to where the ramp begins
@@ -72,7 +73,7 @@ def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Diagnostic
         letter=_letter(config, gripper, faults),
         lugs=(),
         force_n=gripper.force_n or 0.0,
-        unsure=gripper.unsure,
+        unsure=unsure_figures(gripper),
     )
     return replace(mount, lugs=finger_lugs(config, mount, outline))
 

@@ -1,0 +1,74 @@
+"""The manual's step of measuring the gripper and its coupling before parts are printed for them."""
+
+from collections.abc import Iterator
+
+from lumitip_fab.design import Design, Flange, Unsure
+from lumitip_fab.text import as_written, passage, table_of
+
+_GRIPPERS, _OTHERS = "grippers/texts.toml", "docs/measuring.toml"
+_BODY = "holder.body_mm"
+_NOT_PRINTED = {"force_n", "stroke_mm", "height_mm", "robot_mm", "iso"}
+"""Figures of gripper and coupling that no printed part rests on."""
+
+
+def measuring(design: Design) -> str:
+    """The step: each figure that is not sure, with what the design uses, and how to measure it."""
+    mount = design.mount
+    places = [f"`[{mount.gripper}]` of `grippers.toml`"] * bool(_of_gripper(design))
+    for flange in design.flanges:
+        place = f'`["{flange.coupling}"]` of `couplings.toml`'
+        places += [place] * bool(_of_coupling(flange))
+    return _text(
+        "measured_first",
+        rows="\n".join(_rows(design)),
+        title=as_written(mount.title),
+        written=_text("measured_in", places=" or ".join(places)) if places else "",
+        body=_text("measured_body") if _body(design) else "",
+    )
+
+
+def _rows(design: Design) -> Iterator[str]:
+    """The finger bolts, then the figures of gripper, body and coupling."""
+    mount, texts = design.mount, table_of(_OTHERS)
+    into_mm = mount.bolt_length_mm - mount.land_mm
+    bolt = f"{mount.bolt} x {mount.bolt_length_mm:g}, {into_mm:.1f} mm into it"
+    yield _row("depth of the gripper's thread", bolt, "unknown", texts["depth"])
+    how = table_of(_GRIPPERS)["figures"]
+    for figure in _of_gripper(design):
+        yield _row(f"`{figure.name}`", figure.value, figure.confidence, how[figure.name])
+    for figure in _body(design):
+        yield _row(f"`{figure.name}`", figure.value, figure.confidence, texts["body"])
+    for flange in design.flanges:
+        for figure in _of_coupling(flange):
+            how_to = texts["coupling"][figure.name]
+            yield _row(f"`{figure.name}`", figure.value, figure.confidence, how_to)
+
+
+def _of_gripper(design: Design) -> list[Unsure]:
+    """Figures that are measured, and that parts are printed by; some are chosen."""
+    without = {*table_of(_GRIPPERS)["chosen"], *_NOT_PRINTED}
+    return [figure for figure in design.mount.unsure if figure.name not in without]
+
+
+def _of_coupling(flange: Flange) -> list[Unsure]:
+    """Figures that parts are printed by."""
+    return [figure for figure in flange.unsure if figure.name not in _NOT_PRINTED]
+
+
+def _body(design: Design) -> list[Unsure]:
+    """The gripper's diameter where a holder clips on it by the gripper's entry; else nothing."""
+    level = design.system.confidence
+    return [
+        Unsure(_BODY, f"{holder.body_mm:g} mm", level)
+        for holder in design.holders
+        if holder.body_from != _BODY and level not in ("datasheet", "measured")
+    ]
+
+
+def _row(figure: str, value: str, confidence: str, how: str) -> str:
+    return f"| {figure} | {value} | {confidence} | {how} |"
+
+
+def _text(name: str, /, **values: object) -> str:
+    """A passage of the manual with its values."""
+    return passage("docs/chapters.md", name).format(**values)
