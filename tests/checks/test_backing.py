@@ -76,6 +76,11 @@ def slant_filled(part: Manifold, design: Design) -> Manifold:
     return part + box((-20, y - 0.5, -4), (20, y + 2, -3.2))
 
 
+def block_nearer(part: Manifold, _: Design) -> Manifold:
+    """Plastic on the block's front, where a wire fits behind the board, but no thread over it."""
+    return part + box((-3.0, -31.0, -7.0), (3.0, -26.1, -4.7))
+
+
 def shelf_added(part: Manifold, _: Design) -> Manifold:
     return part + box((-24, 5, -11), (24, 17, -3.5))
 
@@ -149,6 +154,7 @@ SENSOR_FRAME = {
     shelf_added: {"overhang", "span", "keys_open", "key_sink"},
     key_filled: {"keys", "key_hole", "keys_open", "key_sink"},
     island_added: {"bodies"},
+    block_nearer: {"thread_room"},
 }
 MOUNT_FRAME = {
     bolt_moved: {"bolt", "bolt_clearance", "screw_seat"},

@@ -107,6 +107,11 @@ def arm_hollow(body: Body) -> Body:
     return body - box((RADIUS + 0.6, -14.0, AXIS_Z - 1.5), (60.0, -11.0, AXIS_Z + 1.5))
 
 
+def arm_barred(body: Body) -> Body:
+    """A block outside an arm, where a tie leaves its lug."""
+    return body + box((RADIUS + 2.0, -14.5, AXIS_Z - 6.0), (RADIUS + 4.5, -12.5, AXIS_Z - 4.0))
+
+
 def foot_missing(body: Body) -> Body:
     """The end that it stands on cut away but for a rib."""
     return body - box((-60.0, -20.0, -90.0), (20.0, -16.0, 10.0))
@@ -133,6 +138,7 @@ DAMAGES: dict[Damage, set[str]] = {
     strap_hole_wide: {"strap_width"},
     strap_hole_filled: {"straps", "strap_width"},
     arm_hollow: {"min_wall"},
+    arm_barred: {"tie_way"},
     foot_missing: {"bed_contact", "overhang"},
     loose_piece: {"bodies", "rim"},
 }

@@ -97,6 +97,24 @@ def test_the_way_of_each_cable_has_all_its_ties(written: Written, preset: str) -
     assert {name: way for name, _, way, _ in rows if "mm" in way} == free
 
 
+@pytest.mark.parametrize(("preset", "robot"), [("published", "J7"), ("mux16", "J7")])
+def test_ties_close_the_arms_from_outside(written: Written, preset: str, robot: str) -> None:
+    design = written({}, preset)
+    (holder,) = design.holders
+    step = mounting(design)
+    first, clipped, closed = (
+        step.index(text)
+        for text in ("tie through each lug outside the arms", "Clip the arms", "to a loop of some")
+    )
+    assert first < clipped < closed
+    assert f"wires of {robot} leave towards the robot" in " ".join(step.split())
+    apart = [holder.cradle_mm + holder.wall_mm - holder.body_mm / 2, holder.arm_lugs[0].face_mm]
+    assert apart[0] > 3 and apart[1] == pytest.approx(holder.cradle_mm + holder.wall_mm)
+    ties = next(p.quantity for p in design.purchase.pieces if p.item.startswith("cable tie"))
+    others = len(design.fingers) * bool(design.mount.lugs) + len(holder.lugs)
+    assert ties - others == 2 * 2  # two loops of 280 mm, of ties of 200 mm
+
+
 def test_another_supply_is_named_by_its_voltage(written: Written) -> None:
     step = steps(written({"supply.voltage_v": 12.0}))
     assert "Its 12 V are on J3.7 and J3.8" in step and "24 V" not in step

@@ -15,6 +15,7 @@ from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
 from lumitip_fab.checks.spans import longest_span_mm
 from lumitip_fab.checks.walls import MESH_MM, Exempt, Mask, beside, measure_relief, walls
 from lumitip_fab.design import Design, Finger, Letter
+from lumitip_fab.design.cabling import THREAD_MM, outer_mm
 from lumitip_fab.design.frames import (
     Matrix,
     applied,
@@ -28,6 +29,7 @@ POSITION_MM = 0.05
 DIAMETER_MM = 0.1
 DEPTH_MM = 0.05
 _DOWN, _UP = np.array([0.0, 0.0, -1.0]), np.array([0.0, 0.0, 1.0])
+_REACH_MM = 30.0
 
 
 def measure_bolt(part: printed.Printed) -> Iterator[Measurement]:
@@ -150,7 +152,14 @@ _HELD: tuple[Step, ...] = (measure_bolt, measure_screw, measure_nose)
 def _measured(part: printed.Printed) -> Iterator[Measurement]:
     steps: tuple[Step, ...] = (measure_print, measure_walls, measure_letter)
     if part.design.stack.sunk:
-        steps += (measure_size, plate.measure_pocket, plate.measure_pins, *_PLATE, *_HELD)
+        steps += (
+            measure_size,
+            measure_thread,
+            plate.measure_pocket,
+            plate.measure_pins,
+            *_PLATE,
+            *_HELD,
+        )
     elif part.kind == "backing":
         steps += (
             plate.measure_sheet_size,
@@ -196,6 +205,30 @@ def measure_letter(part: printed.Printed) -> Iterator[Measurement]:
     letter, to_letter = _letter(part)
     mesh = solids.moved(part.standing, to_letter)
     yield measure_relief("backing.letter", part.subject, mesh, part.finger, letter)
+
+
+def measure_thread(part: printed.Printed) -> Iterator[Measurement]:
+    """From the board to the block along the thread of the strain relief, by rays: a wire and the
+    thread over it are to fit."""
+    design, name = part.design, part.finger.name
+    ends = {
+        cable.section_mm2
+        for cable in design.cabling.cables
+        if name in (cable.start.board, cable.end.board)
+    }
+    for tie in part.finger.ties:
+        (left, y), (right, _) = tie.holes
+        xs, ys = np.meshgrid(
+            np.linspace(left, right, 41), y + THREAD_MM * np.arange(-1.5, 1.0, 0.5)
+        )
+        start = np.column_stack(
+            [xs.ravel(), ys.ravel(), np.full(xs.size, design.stack.pocket_z_mm)]
+        )
+        gap, _ = cast(part.sensor, start, _DOWN, _REACH_MM).first(len(start))
+        least = outer_mm(max(ends)) + THREAD_MM
+        note = f"behind the board, for a wire and {THREAD_MM:g} mm of thread"
+        low = least - DEPTH_MM
+        yield part.figure("thread_room", float(gap.min()), low, math.inf, note=note, at=tie.ref)
 
 
 def _letter(part: printed.Printed) -> tuple[Letter, Matrix]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import manifold3d
 import numpy as np
 import shapely
 
@@ -37,6 +38,9 @@ SPACING_MM = 0.02  # from hole to hole, of the printed part against the board
 ROOFS = 1.1  # overhang, by that of the roofs of its holes
 LEAST_BED_MM2 = 300.0
 LEAST_GRIP_MM = 0.25  # each arm's end inside the body's widest place
+OFF_ARM_MM = 0.1  # from an arm to a tie beside it
+SHARED_MM3 = 0.01
+_SEGMENTS = 720
 _UP, _DOWN = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, -1.0])
 _REACH_MM = 100.0
 
@@ -209,6 +213,23 @@ def measure_straps(clip: Clip) -> Iterator[Measurement]:
     yield clip.figure("strap_width", worst, wanted - HOLE_MM, wanted + HOLE_MM)
 
 
+def measure_ties(clip: Clip) -> Iterator[Measurement]:
+    """The way of each tie from arm to arm: outside the holder, half round the gripper."""
+    holder, body = clip.holder, solids.solid(clip.standing, "the holder")
+    inner = holder.cradle_mm + holder.wall_mm + OFF_ARM_MM
+    heights = {lug.opening.centre_mm[1] for lug in holder.arm_lugs}
+    first = max(lug.along_mm[1] for lug in holder.arm_lugs)
+    for up in sorted(heights):
+        wide, thick = holder.arm_lugs[0].tie_mm
+        outside = manifold3d.Manifold.cylinder(wide, inner + thick, circular_segments=_SEGMENTS)
+        inside = manifold3d.Manifold.cylinder(wide, inner, circular_segments=_SEGMENTS)
+        tie = (outside - inside).translate((0.0, -holder.axis_z_mm, up - wide / 2))
+        tie = tie.trim_by_plane((0.0, 1.0, 0.0), first)
+        note = f"in the way of a tie of {wide:g} x {thick:g} mm from arm to arm"
+        shared = solids.shared_mm3(body, tie)
+        yield clip.figure("tie_way", shared, 0.0, SHARED_MM3, "mm³", note, f"{up:.1f} mm")
+
+
 def _height(clip: Clip, points: solids.Vectors) -> solids.Vectors:
     """Height of what is seen from above at points (x, y); infinite through a hole."""
     above = np.column_stack([points, np.full(len(points), _REACH_MM / 2)])
@@ -222,7 +243,8 @@ def _roofs_mm2(holder: Holder) -> float:
     screws = math.pi / 4 * holder.screw_mm * -holder.seat_z_mm * len(holder.holes)
     straps = math.pi / 4 * holder.strap_hole_mm * holder.wall_mm * 2 * len(holder.strap_y_mm)
     deep = [holder.cradle_mm - math.sqrt(holder.cradle_mm**2 - x**2) for x, _ in holder.holes]
-    ties = sum(lug.opening.width_mm * (lug.along_mm[1] - lug.along_mm[0]) for lug in holder.lugs)
+    lugs = (*holder.lugs, *holder.arm_lugs)
+    ties = sum(lug.opening.width_mm * (lug.along_mm[1] - lug.along_mm[0]) for lug in lugs)
     return screws + straps + ties + holder.nut_mm / math.sqrt(3) * sum(deep)
 
 
@@ -243,4 +265,5 @@ MEASURES: tuple[Measure[Clip], ...] = (
     measure_cradle,
     measure_preload,
     measure_straps,
+    measure_ties,
 )

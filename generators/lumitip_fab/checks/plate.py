@@ -92,13 +92,15 @@ def measure_reliefs(part: Printed) -> Iterator[Measurement]:
     stack, mount = part.design.stack, part.design.mount
     pads = part.finger.connector
     # Behind a bendable plate is the interface's pad.
-    tail = mount.block_front_w_mm - stack.pcb_mm if stack.sunk else stack.floor_mm
+    front = mount.block_front_w_mm - stack.pcb_mm if stack.sunk else stack.floor_mm
     rooms = [(q.name, q.box, q.height_mm) for q in part.finger.parts if q.side == "back"]
     for place, (x, y) in enumerate(pads.pads, start=1):
         solder, wire = pads.pad_mm / 2, pads.drill_mm / 2
         rooms.append(
             (f"pad {place}", Box(x - solder, x + solder, y - solder, y + solder), FILLET_MM)
         )
+        # Below the notch the block rises at 45° to its front.
+        tail = min(front, stack.floor_mm + part.finger.notch.y_max_mm - (y + solder))
         rooms.append((f"tail {place}", Box(x - wire, x + wire, y - wire, y + wire), tail))
     volumes = [
         _filled(part, _lattice(box, stack.pocket_z_mm - deep, stack.pocket_z_mm))

@@ -49,7 +49,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     least = max(LEAST_WALL_MM, design.printing.min_wall_mm)
     held = design.held
     parts = [(f"{held}/{f.name}_{held}.stl", design.mount.lugs, True) for f in design.fingers]
-    parts += [(f"holder/{holder.name}.stl", holder.lugs, False) for holder in design.holders]
+    parts += [(f"holder/{h.name}.stl", (*h.lugs, *h.arm_lugs), False) for h in design.holders]
     for subject, lugs, finger in parts:
         if not lugs:
             continue

@@ -174,7 +174,7 @@ class Holder(Strict):
     screw: Name
     """Thread of the board's screws, in `parts/fasteners.toml`; their nuts go into the holder."""
     strap_hole_mm: float = Field(ge=1, le=10)
-    """Diameter of the two holes in each arm, for screws of the gripper or a cable tie (mm)."""
+    """Diameter of the two holes in each arm, for screws of the gripper (mm)."""
     strap_spacing_mm: float = Field(ge=3, le=100)
     """From hole to hole (mm)."""
 

@@ -32,6 +32,10 @@ That the wire is of such a kind is assumed."""
 STRANDED = 1.15  # diameter of strands over that of solid copper of the same section
 
 
+THREAD_MM = 0.5
+"""Waxed thread of the strain relief: the product in `packs.toml`."""
+
+
 def outer_mm(section_mm2: float) -> float:
     """Diameter of a wire with its insulation."""
     wall = next(thick for most, thick in INSULATION_MM if section_mm2 <= most)

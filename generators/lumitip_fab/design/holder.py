@@ -71,6 +71,9 @@ class Holder:
     strap_hole_mm: float
     lugs: tuple[TieLug, ...]
     """For ties round the cables, on the bed of the printer; none where the tray leaves no room."""
+    arm_lugs: tuple[TieLug, ...]
+    """For ties round the gripper, outside the arms where the body is widest, on the bed of the
+    printer: each side has as many, at the same heights."""
 
     @property
     def rib_mm(self) -> float:
@@ -87,6 +90,14 @@ class Holder:
         """Radius of the bar on an arm's end, with the rib, and its distance from the axis."""
         radius = (self.wall_mm + self.rib_mm) / 2
         return radius, self.cradle_mm + self.wall_mm - radius
+
+    @property
+    def tie_loop_mm(self) -> float:
+        """Length of a tie that is closed through the lugs of both arms: twice half round the body,
+        outside the arms."""
+        lug = self.arm_lugs[0]
+        first, last = lug.along_mm
+        return 2 * (math.pi * (self.cradle_mm + self.wall_mm + lug.out_mm) + last - first)
 
     @property
     def inward_mm(self) -> float:

@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator
 
-from lumitip_fab.design import Design
+from lumitip_fab.design import Design, Holder
 from lumitip_fab.docs.cable_ways import cable_ways
 from lumitip_fab.docs.flange import plugs
+from lumitip_fab.docs.wiring import listed
 from lumitip_fab.text import passage
 
 
@@ -40,7 +41,13 @@ def _work(design: Design) -> Iterator[str]:
     mount = design.mount
     yield _text("still_off" if design.flanges else "switched_off")
     for holder in design.holders:
-        yield _text("in_holder", holder=holder, screws=len(holder.holes))
+        yield _text(
+            "in_holder",
+            holder=holder,
+            screws=len(holder.holes),
+            robot=listed(_to_robot(design, holder)),
+            loop_mm=holder.tie_loop_mm,
+        )
     if not design.holders and any(board.name == "breakout" for board in design.auxiliary_boards):
         yield _text("beside_gripper", mount=mount)
     if design.flanges:
@@ -62,6 +69,18 @@ def _work(design: Design) -> Iterator[str]:
         free = "".join(_text(name, wire=number) for number in own)
         yield _text("supplied", ends=listed_ends, free=free)
     yield _text("moved", rated_n=design.strength.rated_force_n)
+
+
+def _to_robot(design: Design, holder: Holder) -> list[str]:
+    """Connectors of a holder's board from which a cable leads to no finger."""
+    fingers = {finger.name for finger in design.fingers}
+    ends = {
+        near.connector
+        for cable in design.cabling.cables
+        for near, far in ((cable.start, cable.end), (cable.end, cable.start))
+        if near.board == holder.auxiliary and far.board not in fingers
+    }
+    return sorted(ends)
 
 
 def _greatest(design: Design) -> str:

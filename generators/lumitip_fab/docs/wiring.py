@@ -4,7 +4,7 @@ import csv
 import io
 
 from lumitip_fab.design import Cable, Cabling, Design, Pack, Wire
-from lumitip_fab.design.cabling import COLOURS, codes_of, named, outer_mm
+from lumitip_fab.design.cabling import COLOURS, THREAD_MM, codes_of, named, outer_mm
 from lumitip_fab.docs.diagram import diagram
 from lumitip_fab.pipeline.artefact import Artefact
 from lumitip_fab.text import as_written, passage
@@ -102,6 +102,7 @@ def _tied(design: Design) -> str:
     return passage(_TEXTS, "tied").format(
         boards=listed(tied),
         hole_mm=ties[tied[0]][0].hole_mm,
+        thread_mm=THREAD_MM,
         loose=passage(_TEXTS, "loose").format(boards=listed(loose), held=held) if loose else "",
     )
 

@@ -35,9 +35,9 @@ def holder_solid(holder: Holder) -> Solid:
     whole = whole + [_boss(holder, at) for at in holder.holes]
     taken = [cutter for at in holder.holes for cutter in _screw(holder, at)]
     taken += [_strap(holder, side, y) for side in (-1, 1) for y in holder.strap_y_mm]
-    bed = holder_bed_to_auxiliary(holder)
-    whole = whole + [placed(lug, bed) for lug in lug_solids(holder.lugs)]
-    taken += [placed(cutter, bed) for cutter in lug_openings(holder.lugs)]
+    bed, lugs = holder_bed_to_auxiliary(holder), (*holder.lugs, *holder.arm_lugs)
+    whole = whole + [placed(lug, bed) for lug in lug_solids(lugs)]
+    taken += [placed(cutter, bed) for cutter in lug_openings(lugs)]
     whole = (whole - taken).clean()
     return one_solid(whole, "holder", "[holder]")
 

@@ -13,7 +13,7 @@ from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.design import Board, Box, Component, Finger, Point, Tie
 
 HOLE_MM = 1.6
-"""For a waxed thread of 1 mm, which passes twice, or a bare wire."""
+"""For a waxed thread, or a bare wire, that passes twice."""
 GAP_MM = 0.35
 """Hole to pads and bodies: more than `Rules.hole_gap_mm` of any design."""
 OPEN_MM = GAP_MM + HOLE_MM + 0.01

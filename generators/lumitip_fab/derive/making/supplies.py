@@ -111,15 +111,12 @@ def _loop_mm(one: Point, other: Point, through_mm: float) -> float:
 
 
 def _held(of: Assembled) -> Iterator[Used]:
-    """Cable ties: from arm to arm of the holder round the gripper, at the lugs of fingers and
-    holder, and without lugs round a cable that no thread holds."""
+    """Cable ties: loops round the gripper through the lugs of the holder's arms, at the lugs of
+    fingers and holder, and without lugs round a cable that no thread holds."""
     count = 0
     for holder in of.holders:
-        arms_deg = 360 - 2 * holder.strap_deg
-        outside_mm = holder.cradle_mm + holder.wall_mm
-        round_mm = 2 * math.pi * outside_mm * arms_deg / 360
-        each = math.ceil((round_mm + TIE_LOCK_MM) / (TIE_MM - TIE_LOCK_MM))
-        count += len(holder.strap_y_mm) * each
+        each = max(2, math.ceil(holder.tie_loop_mm / (TIE_MM - TIE_LOCK_MM)))
+        count += len(holder.arm_lugs) // 2 * each
     loose = [finger for finger in of.fingers if of.mount.lugs or not finger.ties]
     lugs = sum(len(holder.lugs) for holder in of.holders)
     where = ["holder round the gripper"] * bool(count) + ["cables at the gripper"] * bool(loose)

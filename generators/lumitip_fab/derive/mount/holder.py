@@ -8,7 +8,7 @@ from lumitip_fab.derive.finger.stack import held_by, stiff_mm
 from lumitip_fab.derive.making.fits import Drawn
 from lumitip_fab.derive.mount.fasteners import screw_length_mm
 from lumitip_fab.derive.mount.rules import refuse_holder, shoulder_deg
-from lumitip_fab.derive.mount.tie_lugs import holder_lugs
+from lumitip_fab.derive.mount.tie_lugs import arm_lugs, holder_lugs
 from lumitip_fab.design import AuxiliaryBoard, Box, Holder
 
 NUT_PLAY_MM = 0.2  # nut pockets beyond the nuts
@@ -63,6 +63,8 @@ def derive_holder(
         strap_y_mm=(-spacing, spacing),
         strap_hole_mm=p.holder.strap_hole_mm,
         lugs=(),
+        arm_lugs=(),
     )
     refuse_holder(config, of, holder, faults)
-    return (replace(holder, lugs=holder_lugs(config, holder, of)),)
+    lugs, on_arms = holder_lugs(config, holder, of), arm_lugs(config, holder)
+    return (replace(holder, lugs=lugs, arm_lugs=on_arms),)

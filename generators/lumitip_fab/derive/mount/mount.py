@@ -21,6 +21,7 @@ from lumitip_fab.derive.mount.rules import refuse_block, refuse_place
 from lumitip_fab.derive.mount.tie_lugs import finger_lugs
 from lumitip_fab.derive.mount.unsure import unsure_figures
 from lumitip_fab.design import Closing, Letter, Mould, Mount, Outline, Stack
+from lumitip_fab.design.cabling import THREAD_MM, outer_mm
 
 LETTER_MARGIN_MM = 0.6  # or a printed line, to the bed, and to where the ramp begins
 
@@ -38,6 +39,9 @@ def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Diagnostic
     before = p.stack.pcb_mm + (p.stack.floor_mm if is_flex(p) else 0.0)
     front = max(before + value, nose.front_w_mm if nose else 0.0)
     most = gripper.bolt_w_mm - gripper.counterbore_mm / 2 - p.printer.min_wall_mm
+    if not is_flex(p):
+        tied = outer_mm(p.wiring.section_mm2) + THREAD_MM
+        front = max(front, min(p.stack.pcb_mm + tied, most))
     faults.unless(
         front <= most, "no_wall_before_bolt", field=field, value=value, most=most - before
     )

@@ -1,4 +1,5 @@
-"""Lugs for cable ties: on the sides of the coupling's block, and beside the tray of a holder."""
+"""Lugs for cable ties: on the sides of the coupling's block, beside the tray of a holder, and
+outside its arms."""
 
 import math
 
@@ -58,6 +59,22 @@ def holder_lugs(config: Input, holder: Holder, of: AuxiliaryBoard) -> tuple[TieL
         low = high - _height_mm(wall, on_bed=False) if end else 0.0
         lugs[side, end] = _lug(row.ref, side, holder.outer.x_max_mm, low, along, wall, not end)
     return tuple(lugs.values())
+
+
+def arm_lugs(config: Input, holder: Holder) -> tuple[TieLug, ...]:
+    """Outside each arm, where the body is widest, for the ties round the gripper: at the end that
+    it is printed on, and where there is room at the other."""
+    wall, high = _wall_mm(config), holder.outer.length_mm
+    face, middle = holder.cradle_mm + holder.wall_mm, -holder.axis_z_mm
+    along = middle - LENGTH_MM[1] / 2, middle + LENGTH_MM[1] / 2
+    lows = [0.0]
+    if high >= 2 * _height_mm(wall, on_bed=False):
+        lows.append(high - _height_mm(wall, on_bed=False))
+    return tuple(
+        _lug(f"{name} arm {n}", side, face, low, along, wall, on_bed=n == 1)
+        for name, side in _SIDES.items()
+        for n, low in enumerate(lows, 1)
+    )
 
 
 def _wall_mm(config: Input) -> float:
