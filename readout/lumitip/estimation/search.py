@@ -80,7 +80,7 @@ class Search:
         if doubtful(found):
             return self._loose(kind, frame, found)
         # Cells see little of a thin cable: one elsewhere may look much the same.
-        return self._of_several(kind, frame, found) if kind == "cable" else found
+        return self._of_several(kind, frame, found, found.pose) if kind == "cable" else found
 
     def alive(self, kind: str, found: Fit) -> Fit:
         """A fit to all cells or, if that is bad, without a few that nothing explains."""
@@ -102,9 +102,9 @@ class Search:
         loose = frame.looser(LOOSE)
         return self._of_several(kind, loose, self.loosely(kind, plain, frame), before)
 
-    def _of_several(self, kind: str, frame: Frame, one: Fit, before: Floats | None = None) -> Fit:
+    def _of_several(self, kind: str, frame: Frame, one: Fit, likely: Floats | None = None) -> Fit:
         """The best of the fits from the closest poses of the bank and of another one, with the
-        optics as free as in that, and its rivals."""
+        optics as free as in that, and its rivals; of similar ones the closest to a likely pose."""
         shape, bank = self.shape(kind), self.bank(kind)
         starts = bank.closest(frame.light, frame.scale, _STARTS)
         poses = [self._full_pose(kind, pose, frame, one.drifts) for pose in starts]
@@ -114,10 +114,10 @@ class Search:
         first = looked[int(losses.argmin())]
         near = losses < losses.min() + RIVAL
         rivals = bank.elsewhere(first, [f for f, is_so in zip(looked, near, strict=True) if is_so])
-        if before is not None:
-            likely = [first, *rivals]
-            first = min(likely, key=lambda f: bank.distance(f.pose, before))
-            rivals = bank.elsewhere(first, likely)
+        if likely is not None:
+            similar = [first, *rivals]
+            first = min(similar, key=lambda f: bank.distance(f.pose, likely))
+            rivals = bank.elsewhere(first, similar)
         return replace(fit(shape, first.pose, frame), rivals=poses_of(rivals))
 
     def decided(self, frame: Frame) -> tuple[str, Fit]:
