@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,7 @@ from lumitip_fab.boards.model import (
     Placement,
     Routing,
     Track,
+    Via,
 )
 from lumitip_fab.boards.placed import BYPASS_MM, bypass_pads, placed_pads
 from lumitip_fab.boards.pour import pour
@@ -47,6 +49,28 @@ def poured(routed: tuple[Placement, Routing]) -> Poured:
 def test_a_poured_board_has_no_fault(poured: Poured) -> None:
     faults = verify(BoardModel(*poured))
     assert not faults, summary(faults)
+
+
+def test_a_via_that_no_ground_reaches_is_left_out() -> None:
+    """A track that passes between a capacitor and its via leaves a piece of pour at the via that
+    nothing else reaches; it counted as ground, because the via did."""
+    placement = small.board(
+        small.part("J1", small.PIN, (-8.8, 0), {"1": "GND"}),
+        small.part("J2", small.PIN, (8.8, 0), {"1": "A"}),
+    )
+    routing = route(placement)
+    kind = placement.classes[0]
+    reached, lost = (Via("GND", x_mm, 3.0, kind.via_mm, kind.via_drill_mm) for x_mm in (-5.0, 3.0))
+    ring = [(1.8, 1.8), (4.2, 1.8), (4.2, 4.2), (1.8, 4.2), (1.8, 1.8)]
+    fence = [Track("A", side, *ends, 0.25) for side in SIDES for ends in pairwise(ring)]
+    lead = Track("A", "front", (4.2, 1.8), (8.8, 0.0), 0.25)
+    hooked = dataclasses.replace(
+        routing, tracks=(*routing.tracks, *fence, lead), vias=(*routing.vias, reached, lost)
+    )
+    poured, fills, _ = pour(placement, hooked)
+    assert reached in poured.vias and lost not in poured.vias
+    inside = shapely.Point(3.0, 3.0)
+    assert not any(fill.area.intersects(inside) for fill in fills)
 
 
 @pytest.mark.parametrize("ref", ["C1", "R1"])

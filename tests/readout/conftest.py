@@ -1,7 +1,8 @@
 """A layout as the published sensor's, wired in order."""
 
 import json
-from collections.abc import Callable
+import signal
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -78,3 +79,11 @@ def published_values(
         return np.concatenate(published_frames[name]["columns"]).astype(np.uint8)
 
     return values
+
+
+@pytest.fixture
+def hangups() -> Iterator[None]:
+    """Programs that are started get SIGHUP, also where the tests run under `nohup`."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)

@@ -110,6 +110,7 @@ def test_ctrl_c_ends_a_command_in_silence(folder: Path, name: str, delay_s: floa
 
 
 @pytest.mark.slow_cases
+@pytest.mark.usefixtures("hangups")
 @pytest.mark.parametrize("name", ["serve", "view", "tare", "twin"])
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 @pytest.mark.parametrize("delay_s", [0.02, 2.0])

@@ -12,7 +12,7 @@ from mcap.reader import make_reader
 from lumitip import Layout
 from lumitip.estimation.estimate import without_contact
 from lumitip.foxglove import drawings, numbers, panels, write_scene
-from lumitip.frame import Frame
+from lumitip.frame import Frame, RecordedFrame
 from lumitip.recording import Reader, Writer
 from lumitip.view.drawn import ESTIMATE
 
@@ -220,9 +220,9 @@ def test_drawings_come_at_most_sixty_times_a_second(
     assert "/fast/estimate" not in topics
 
 
-def _at(frame: Frame, seq: int, t_wall: float, t_host: float = 0.0) -> Frame:
-    fields = {name: getattr(frame, name) for name in frame.__slots__}
-    return Frame(**fields | {"seq": seq, "t_wall": t_wall, "t_host": t_host})
+def _at(frame: Frame, seq: int, t_wall: float, t_host: float = 0.0) -> RecordedFrame:
+    numbers = frame.raw, frame.bits, frame.dropped_before
+    return RecordedFrame(seq, frame.t_device, t_host, t_wall, *numbers)
 
 
 def test_panels_show_topics_and_fields_that_the_file_has(messages: Messages) -> None:

@@ -12,6 +12,8 @@ import pytest
 from lumitip.frame import Frame
 from lumitip.recording import Reader
 
+pytestmark = pytest.mark.usefixtures("hangups")
+
 
 @pytest.mark.parametrize(
     ("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 0), (signal.SIGHUP, 0)]

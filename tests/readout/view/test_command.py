@@ -57,6 +57,7 @@ def test_two_words_show_a_demonstration_and_ctrl_c_ends_it(tmp_path: Path) -> No
     assert reader.metadata.device_id == "twin:demo"
 
 
+@pytest.mark.usefixtures("hangups")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_a_recording_of_the_view_whole(tmp_path: Path, number: int) -> None:
     with running(tmp_path, "twin://demo?rate=300") as (process, url):

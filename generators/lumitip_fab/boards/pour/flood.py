@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from shapely import Geometry
 
 from lumitip_fab.boards.model import SIDES, Fill, NetClass, Placement, Routing, Track, Via
-from lumitip_fab.boards.placed import BYPASS_MM, PlacedPad, bypass_pads, placed_pads
+from lumitip_fab.boards.placed import PlacedPad, bypass_pads, placed_pads
+from lumitip_fab.boards.pour.beside import beside
 from lumitip_fab.boards.pour.room import MARGIN_MM, Sheet, room, sheet, via_room
 from lumitip_fab.boards.route.kernels import kernel
 from lumitip_fab.boards.verify import DRILL_WALL_MM
@@ -126,7 +127,7 @@ def pour(
         return routing, (), frozenset()
     bypasses = bypass_pads(placement)
     rooms = {side: room(placement, routing, side) for side in SIDES}
-    own = _of_ground(placement, routing)
+    own, loose = _of_ground(placement, routing, pads)
     kind = _kind(placement)
     free = via_room(placement, routing, kind.via_mm, kind.via_drill_mm)
     filled = _Sheets(pads)
@@ -135,8 +136,8 @@ def pour(
         sheets = filled.of
         whole = [shapely.union_all(sheets[side].pieces) for side in SIDES]
         possible = candidates(placement, free, *whole)
-        pieces, stitches = _stitched(sheets, own, possible, bypasses)
-        islands = _islands(sheets, pieces, own.tracks, (*own.vias, *stitches))
+        pieces, joined = _stitched(sheets, own, loose, possible, bypasses)
+        islands = _islands(sheets, pieces, own.tracks, (*own.vias, *joined))
         if not any(islands.values()):
             break
         for side, found in islands.items():
@@ -144,7 +145,8 @@ def pour(
                 rooms[side] = shapely.difference(
                     rooms[side], shapely.union_all(found).buffer(_APART_MM)
                 )
-    done = dataclasses.replace(routing, vias=(*routing.vias, *stitches))
+    others = (via for via in routing.vias if via not in loose)
+    done = dataclasses.replace(routing, vias=(*others, *joined))
     fills = tuple(
         Fill(placement.ground, side, shapely.set_precision(sheets[side].pieces[i], 0.001))
         for side in SIDES
@@ -226,66 +228,64 @@ def _islands(
     return found
 
 
-def _of_ground(placement: Placement, routing: Routing) -> Routing:
-    """Tracks and vias of ground."""
-    return dataclasses.replace(
-        routing,
-        tracks=tuple(t for t in routing.tracks if t.net == placement.ground),
-        vias=tuple(v for v in routing.vias if v.net == placement.ground),
-    )
-
-
-def _beside(pads: Sequence[PlacedPad], possible: list[Via], present: list[Via]) -> list[Via]:
-    """The nearest via for each pad that has none as near yet, where one is near."""
-    added: list[Via] = []
-    for pad in pads:
-        away_mm = _away_mm(pad, possible)
-        has = _away_mm(pad, [*present, *added]).min(initial=math.inf)
-        if away_mm.min(initial=math.inf) <= BYPASS_MM and away_mm.min() < has:
-            added.append(possible[int(away_mm.argmin())])
-    return added
-
-
-def _away_mm(pad: PlacedPad, vias: Sequence[Via]) -> NDArray[np.float64]:
-    places = np.array([(v.x_mm, v.y_mm) for v in vias]).reshape(-1, 2)
-    return np.asarray(shapely.distance(pad.area, shapely.points(places)), np.float64).round(6)
+def _of_ground(
+    placement: Placement, routing: Routing, pads: Sequence[PlacedPad]
+) -> tuple[Routing, list[Via]]:
+    """Tracks and vias of ground; and the vias that the pour alone may join, since neither a track
+    nor a pad does."""
+    tracks = tuple(t for t in routing.tracks if t.net == placement.ground)
+    vias = [v for v in routing.vias if v.net == placement.ground]
+    copper = [shapely.LineString([t.start, t.end]) for t in tracks] + [pad.area for pad in pads]
+    places = shapely.points(np.array([(v.x_mm, v.y_mm) for v in vias]).reshape(-1, 2))
+    led = set(shapely.STRtree(places).query(copper, predicate="intersects")[1].tolist())
+    joined = tuple(via for i, via in enumerate(vias) if i in led)
+    loose = [via for i, via in enumerate(vias) if i not in led]
+    return dataclasses.replace(routing, tracks=tracks, vias=joined), loose
 
 
 def _stitched(
-    sheets: dict[Side, Sheet], own: Routing, possible: list[Via], bypasses: Sequence[PlacedPad]
+    sheets: dict[Side, Sheet],
+    own: Routing,
+    loose: list[Via],
+    possible: list[Via],
+    bypasses: Sequence[PlacedPad],
 ) -> tuple[dict[Side, list[int]], list[Via]]:
     """Join more pieces of pour to those that are ground, and all of them at many places.
 
     Args:
         sheets: the pour of each side.
         own: tracks and vias of ground.
+        loose: vias of the routing that only the pour joins.
         possible: vias that could be added.
         bypasses: ground pads that want a via near.
 
     Returns:
-        Pieces that are ground, of each side; vias to add.
+        Pieces that are ground, of each side; vias that join them: those that were loose, without
+        those that no ground reaches, and added ones.
     """
     ground = {side: _grounded(sheets[side], side, own) for side in SIDES}
-    places = [(v.x_mm, v.y_mm) for v in possible]
+    every = [*loose, *possible]
+    places = [(v.x_mm, v.y_mm) for v in every]
     on_side = [sheets[side].pieces_at(places) for side in SIDES]
-    lands = [
-        (via, dict(zip(SIDES, on, strict=True)))
-        for via, *on in zip(possible, *on_side, strict=True)
-        if min(on) >= 0
-    ]
-    stitches: list[Via] = []
+    on_both = [dict(zip(SIDES, on, strict=True)) for on in zip(*on_side, strict=True)]
+    lands = [(n, on) for n, on in enumerate(on_both) if min(on.values()) >= 0]
+    joining: list[int] = []
     grown = True
     while grown:
         grown = False
-        for via, on in lands:
+        for number, on in lands:
             joined = [on[side] in ground[side] for side in SIDES]
             if any(joined) and not all(joined):
                 for side in SIDES:
                     ground[side].add(on[side])
-                stitches.append(via)
+                joining.append(number)
                 grown = True
-    used = {(v.x_mm, v.y_mm): v for v, on in lands if all(on[s] in ground[s] for s in SIDES)}
-    stitches += _beside(bypasses, list(used.values()), [*own.vias, *stitches])
+    old = len(loose)
+    kept = [loose[n] for n in range(old) if any(on_both[n][s] in ground[s] for s in SIDES)]
+    stitches = [*kept, *(every[n] for n in joining if n >= old)]
+    whole = [n for n, on in lands if all(on[s] in ground[s] for s in SIDES)]
+    used = {places[n]: every[n] for n in whole if n >= old}
+    stitches += beside(bypasses, list(used.values()), [*own.vias, *stitches])
     taken = [(v.x_mm, v.y_mm) for v in (*own.vias, *stitches)]
     stitches += [used[at] for at in spread(sorted(used), taken, APART_MM)]
     return {side: sorted(found) for side, found in ground.items()}, stitches
