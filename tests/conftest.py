@@ -66,10 +66,14 @@ def once(tmp_path_factory: pytest.TempPathFactory) -> Once:
 
 @pytest.fixture(scope="session")
 def built(once: Once) -> Callable[[str], Path]:
-    """`built("dense")`: the output folder of a preset. Do not change it."""
-    return lambda preset: once(
-        preset, lambda out: build(DESIGN / "presets" / f"{preset}.toml", out)
-    )
+    """`built("dense")`: the output folder of a preset, `built("fingertip")` that of the default
+    design. Do not change it."""
+
+    def get(design: str) -> Path:
+        folder = DESIGN if design == "fingertip" else DESIGN / "presets"
+        return once(design, lambda out: build(folder / f"{design}.toml", out))
+
+    return get
 
 
 @pytest.fixture(scope="session")

@@ -38,7 +38,9 @@ def test_the_figures_of_a_design_are_those_of_the_gallery(name: str) -> None:
 
 
 @pytest.mark.slow_cases
-@pytest.mark.parametrize("name", ["published", "dense", "flex", "integrated", "asymmetric"])
+@pytest.mark.parametrize(
+    "name", ["published", "fingertip", "dense", "flex", "integrated", "asymmetric"]
+)
 def test_the_figures_of_a_build_are_those_of_the_gallery(
     name: str, built: Callable[[str], Path]
 ) -> None:

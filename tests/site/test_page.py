@@ -191,7 +191,7 @@ def test_the_head_has_the_whole_time_and_both_sums(opened: Opened, site: Path) -
     answers = opened().locator(".answer").all_text_contents()
     minutes = sum(part.minutes * part.number for part in prints(Folder.of(site)))
     hours, rest = divmod(round(minutes), 60)
-    assert rest and f"{hours} h {rest:02d} min of printing" in answers[1]
+    assert hours and f"{hours} h {rest:02d} min of printing" in answers[1]
     with (site / "order.csv").open(encoding="utf-8", newline="") as file:
         packs = float(list(csv.DictReader(file))[-1]["price"])
     assert f"{packs:.0f} EUR if whole packs are bought." in answers[0]

@@ -5,6 +5,7 @@ from typing import Literal, Self
 from pydantic import Field, model_validator
 
 from lumitip_fab.catalogue.record import (
+    TRUSTED,
     Capacitances,
     Confidence,
     Entry,
@@ -66,7 +67,7 @@ class Polar(Optical):
     @property
     def mark_is_known(self) -> bool:
         """Whether the marked terminal is measured, or read from a datasheet."""
-        return self.mark_confidence in ("datasheet", "measured")
+        return self.mark_confidence in TRUSTED
 
 
 class Led(Polar):

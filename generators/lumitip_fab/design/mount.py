@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from lumitip_fab.catalogue.record import TRUSTED
 from lumitip_fab.design.making import Letter
 from lumitip_fab.design.shape import Box, Point
 from lumitip_fab.design.tie_lug import TieLug
@@ -172,6 +173,11 @@ class System:
     """Names of the holders that go round that body."""
     holder_z_mm: float
     """Middle of those."""
+
+    @property
+    def body_is_known(self) -> bool:
+        """Whether parts that go round the body are printed without a measurement."""
+        return self.confidence in TRUSTED
 
 
 @dataclass(frozen=True)

@@ -57,11 +57,11 @@ def _of_coupling(flange: Flange) -> list[Unsure]:
 
 def _body(design: Design) -> list[Unsure]:
     """The gripper's diameter where a holder clips on it by the gripper's entry; else nothing."""
-    level = design.system.confidence
+    system = design.system
     return [
-        Unsure(_BODY, f"{holder.body_mm:g} mm", level)
+        Unsure(_BODY, f"{holder.body_mm:g} mm", system.confidence)
         for holder in design.holders
-        if holder.body_from != _BODY and level not in ("datasheet", "measured")
+        if holder.body_from != _BODY and not system.body_is_known
     ]
 
 

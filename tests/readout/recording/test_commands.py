@@ -141,9 +141,9 @@ def test_replay_cuts_gaps_to_a_second(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    given = make_frames(5)
+    sent = make_frames(5)
     late_s = [0.0, 0.0, 0.0, 36_000.0, 36_000.0]
-    path = record([recorded(f, late) for f, late in zip(given, late_s, strict=True)])
+    path = record([recorded(f, late) for f, late in zip(sent, late_s, strict=True)])
     slept: list[float] = []
     monkeypatch.setattr("time.sleep", slept.append)
     monkeypatch.setattr("time.monotonic", lambda: 50.0)
@@ -153,7 +153,7 @@ def test_replay_cuts_gaps_to_a_second(
 
 
 @pytest.mark.parametrize(
-    "given",
+    "option",
     [
         ("--seconds", "nan"),
         ("--seconds", "-1"),
@@ -166,24 +166,24 @@ def test_replay_cuts_gaps_to_a_second(
     ],
 )
 def test_record_refuses_times_and_numbers_that_are_none(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], given: tuple[str, str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], option: tuple[str, str]
 ) -> None:
     with pytest.raises(SystemExit) as ended:
-        main(["record", "twin://edge", str(tmp_path / "run.mcap"), *given])
+        main(["record", "twin://edge", str(tmp_path / "run.mcap"), *option])
     assert ended.value.code == 2
-    assert f"argument {given[0]}: the value is {given[1]};" in capsys.readouterr().err
+    assert f"argument {option[0]}: the value is {option[1]};" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
 
 def test_export_to_csv(make_frames: Make, record: Record, tmp_path: Path) -> None:
-    given = make_frames(30, legacy=True)
+    sent = make_frames(30, legacy=True)
     table = tmp_path / "run.csv"
-    assert main(["export", str(record(given)), str(table)]) == 0
+    assert main(["export", str(record(sent)), str(table)]) == 0
     with table.open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 30
     assert len(rows[0]) == 6 + 2 * 32
-    for frame, row in zip(given, rows, strict=True):
+    for frame, row in zip(sent, rows, strict=True):
         assert float(row["t_wall"]) == frame.t_wall and int(row["seq"]) == frame.seq
         assert (row["t_device"], row["dropped_before"]) == ("", "")
         assert [int(row[f"raw_{i}"]) for i in range(32)] == frame.raw.tolist()
@@ -193,20 +193,20 @@ def test_export_to_csv(make_frames: Make, record: Record, tmp_path: Path) -> Non
 def test_export_to_parquet(
     make_frames: Make, record: Record, tmp_path: Path, calibration: Calibration
 ) -> None:
-    given = make_frames(5000, 12)
-    path = record(given, calibration=calibration)
+    sent = make_frames(5000, 12)
+    path = record(sent, calibration=calibration)
     assert export(path, tmp_path / "run.parquet") == 5000
     table = parquet.read_table(tmp_path / "run.parquet")
     assert table.num_rows == 5000 and table.num_columns == 6 + 2 * 32
-    assert table["t_wall"].to_pylist() == [f.t_wall for f in given]
-    assert table["t_device"].to_pylist() == [f.t_device for f in given]
+    assert table["t_wall"].to_pylist() == [f.t_wall for f in sent]
+    assert table["t_device"].to_pylist() == [f.t_device for f in sent]
     raw = np.stack([table[f"raw_{i}"].to_numpy() for i in range(32)], axis=1)
-    np.testing.assert_array_equal(raw, [f.raw for f in given])
+    np.testing.assert_array_equal(raw, [f.raw for f in sent])
     reader = Reader(path)
     values = [reader.metadata.values(f)[7] for f in reader]
     np.testing.assert_array_equal(table["value_7"].to_numpy(), np.array(values))
-    told = json.loads(table.schema.metadata[b"lumitip"])
-    assert told["device_id"] == "C0:FF:EE" and told["design_hash"] in told["layout"]
+    metadata = json.loads(table.schema.metadata[b"lumitip"])
+    assert metadata["device_id"] == "C0:FF:EE" and metadata["design_hash"] in metadata["layout"]
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])

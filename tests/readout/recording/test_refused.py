@@ -15,18 +15,18 @@ CELLS = published_layout()
 
 
 def test_a_recording_of_what_is_no_frame(tmp_path: Path) -> None:
-    told: dict[str, Any] = {"device_id": "dev"}
+    required: dict[str, Any] = {"device_id": "dev"}
     for more in ({"calibration": "empty"}, {"start_wall": -1.0}, {"start_wall": "now"}):
         with pytest.raises(RecordingError, match=r" is .*; "):
-            Writer(tmp_path / "run.mcap", CELLS, **told, **more)  # type: ignore[arg-type]
+            Writer(tmp_path / "run.mcap", CELLS, **required, **more)  # type: ignore[arg-type]
     for versions in ("x", 3, ["lumitip"]):
         with pytest.raises(RecordingError, match=r"made_with is .*; versions by name"):
-            Writer(tmp_path / "run.mcap", CELLS, **told, made_with=versions)  # type: ignore[arg-type]
+            Writer(tmp_path / "run.mcap", CELLS, **required, made_with=versions)  # type: ignore[arg-type]
     with pytest.raises(RecordingError, match="cannot be written"):
         Writer(tmp_path / "run.mcap", CELLS, device_id="\ud800")
     assert not list(tmp_path.iterdir())
     with (
-        Writer(tmp_path / "run.mcap", CELLS, **told) as writer,
+        Writer(tmp_path / "run.mcap", CELLS, **required) as writer,
         pytest.raises(RecordingError, match=r"; a Frame is needed"),
     ):
         writer.write(np.zeros(32))  # type: ignore[arg-type]

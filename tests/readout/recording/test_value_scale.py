@@ -54,8 +54,8 @@ def test_a_replayed_frame_has_the_values_and_the_dark_centre(recorded: Expected)
     assert frame.values == pytest.approx(values, abs=0.05)
     contact = processor(frame.values)
     assert contact.centre_mm == pytest.approx(centre_mm, abs=0.02)
-    told = np.frombuffer(encode(1, 1, [frame], contact), "<f4", 20, 32)
-    assert told[3:5] == pytest.approx(centre_mm, abs=0.02)
+    read = np.frombuffer(encode(1, 1, [frame], contact), "<f4", 20, 32)
+    assert read[3:5] == pytest.approx(centre_mm, abs=0.02)
 
 
 def test_the_replay_command_prints_the_dark_centre(
@@ -73,8 +73,8 @@ def test_exported_tables_keep_codes_and_values_apart(recorded: Expected, tmp_pat
     assert main(["export", str(path), str(tmp_path / "table.csv")]) == 0
     with (tmp_path / "table.csv").open(encoding="utf-8") as file:
         row = next(csv.DictReader(file))
-    told = [float(row[f"value_{cell}"]) for cell in range(32)]
-    assert told == pytest.approx(values.astype(float), abs=0.05)
+    read = [float(row[f"value_{cell}"]) for cell in range(32)]
+    assert read == pytest.approx(values.astype(float), abs=0.05)
     codes = np.array([float(row[f"raw_{cell}"]) for cell in range(32)])
     assert np.corrcoef(codes, values)[0, 1] == pytest.approx(-1.0, abs=1e-4)
 

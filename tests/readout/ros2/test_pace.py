@@ -5,6 +5,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -250,7 +251,7 @@ def recorded(path: Path, number: int, gap_s: float = 0.0) -> Path:
     with Fingertip.open("twin://cable") as tip, Writer(path, tip.layout, device_id="x") as writer:
         frame = tip.read(timeout=5.0)
         for seq in range(number):
-            fields = {name: getattr(frame, name) for name in frame.__slots__}
-            t_wall = frame.t_wall + seq * 0.02 + (gap_s if seq == number - 1 else 0.0)
-            writer.write(type(frame)(**fields | {"seq": seq, "t_wall": t_wall}))
+            later_s = seq * 0.02 + (gap_s if seq == number - 1 else 0.0)
+            t, t_wall = frame.t + later_s, frame.t_wall + later_s
+            writer.write(replace(frame, seq=seq, t=t, t_wall=t_wall))
     return path

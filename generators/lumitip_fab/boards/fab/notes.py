@@ -102,8 +102,7 @@ def assembly_note(board: Placement, fab: Fab) -> bytes:
 
 def _polarity(board: Placement, chip: Led | Photodetector) -> Iterator[str]:
     part = next(part for part in bought(board) if part.kind in _POLAR)
-    known = chip.mark_confidence in ("datasheet", "measured")
-    for name in ("pads", chip.mark_confidence if known else "assumed"):
+    for name in ("pads", chip.mark_confidence if chip.mark_is_known else "assumed"):
         yield passage(_TEXTS, name).format(
             refs=_refs(board, part.kind),
             part=part.part,
