@@ -22,7 +22,7 @@ from lumitip.links.twin import published_layout
 from poses import Trial, estimated, gross, misses
 from second_bench import DRIFTED, TARED, Bound, fingers, lights, trials
 
-POSES, SEED = 240, 700
+POSES, SEED = 240, 902
 FINGERS = 12
 GOALS = {"edge": (0.15, 0.5), "cable": (0.25, 1.0)}
 GROSS, TIMES_BOUND = 0.5, 1.3

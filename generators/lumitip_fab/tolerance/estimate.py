@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumitip.estimation import PoseEstimator
-from lumitip.estimation.estimate import covariance
 from lumitip.estimation.fit import (
     ANGLE_SD_DEG,
     OFFSET_SD_MM,
@@ -25,6 +24,7 @@ from lumitip.estimation.fit import (
 )
 from lumitip.estimation.learn import drift_from, gains_from
 from lumitip.estimation.search import LOOSE
+from lumitip.estimation.uncertain import covariance
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Model

@@ -208,14 +208,6 @@ def _quality(found: Fit) -> float:
     return 1.0 - float(np.sum((seen - model) ** 2)) / spread if spread else 0.0
 
 
-def covariance(found: Fit) -> Floats:
-    """Covariance of a pose: the inverse normal matrix, scaled up if the misfit is too large."""
-    spare = max(int(np.count_nonzero(found.frame.scale)) - found.pose.size, 1)
-    # Without this an entry that no cell sees would have an infinite deviation.
-    regular = found.normal + 1e-6 * np.eye(found.pose.size)
-    return np.asarray(np.linalg.inv(regular), dtype=np.float64) * max(found.cost / spare, 1.0)
-
-
 def _line(
     pose: Floats, names: tuple[str, ...]
 ) -> tuple[tuple[float, float], Floats, tuple[str, ...]]:

@@ -14,7 +14,6 @@ from lumitip.estimation.estimate import (
     MISFIT_COUNTS,
     Estimate,
     contrast,
-    covariance,
     report,
     rms_counts,
     without_contact,
@@ -22,6 +21,7 @@ from lumitip.estimation.estimate import (
 from lumitip.estimation.fit import ANGLE_SD_DEG, OFFSET_SD_MM, Fit, Frame, drifting, likely
 from lumitip.estimation.last import Last, after
 from lumitip.estimation.search import ALPHA_SD, BENT, GAP_SD_MM, Search
+from lumitip.estimation.uncertain import BORDER_SD_MM, PLACE_SD_MM, covariance, misplaced
 from lumitip.grid import Floats, collinear
 from lumitip.layout import Layout, Optics
 from lumitip.processing.batch import usable_cells
@@ -71,6 +71,8 @@ class PoseEstimator:
         huber: float = HUBER,
         gap_sd_mm: float = GAP_SD_MM,
         alpha_sd: float = ALPHA_SD,
+        place_sd_mm: float = PLACE_SD_MM,
+        border_sd_mm: float = BORDER_SD_MM,
     ) -> None:
         """Prepare tables for the optics of a design.
 
@@ -86,6 +88,10 @@ class PoseEstimator:
             huber: standard deviations beyond which the loss grows linearly.
             gap_sd_mm: standard deviation of the gap, 0 if it is known (mm).
             alpha_sd: standard deviation of the scattered share, 0 if it is known.
+            place_sd_mm: standard deviation of a cell's place across the light, 0 if LED, detector
+                and holes are exactly in line (mm).
+            border_sd_mm: standard deviation of the shadow of a sheet's border, 0 if the sheet is
+                thin and opaque (mm).
 
         Raises:
             LayoutError: if `layout` is no layout.
@@ -104,6 +110,10 @@ class PoseEstimator:
         self._noise = _number(noise, "noise", above=0.0)
         self._gain_error = _number(gain_error, "gain_error")
         self._huber = _number(huber, "huber", above=0.0)
+        self._moved = (
+            _number(place_sd_mm, "place_sd_mm"),
+            _number(border_sd_mm, "border_sd_mm"),
+        )
         search_settings = (
             _number(diameter_mm, "diameter_mm", LEAST_DIAMETER_MM, MOST_DIAMETER_MM),
             _number(gap_sd_mm, "gap_sd_mm"),
@@ -150,6 +160,7 @@ class PoseEstimator:
             deviations = np.sqrt(np.abs(np.diag(uncertain))[:2])
             if np.any(deviations > _BLURRED):
                 free = replace(free, pose=likely(shape, free, deviations))
+        uncertain = uncertain + misplaced(shape, free, *self._moved)
         dead = usable & (found.frame.scale == 0.0)
         flags = ("dead",) if dead.any() else ()
         estimate = report(shape, free, uncertain, self._search.reach_mm, self._mirrored, flags)

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from lumitip.estimation import Estimate, PoseEstimator
-from lumitip.estimation.estimate import covariance, report
+from lumitip.estimation.estimate import report
 from lumitip.estimation.fit import Fit
+from lumitip.estimation.uncertain import covariance
 from lumitip.twin import Cable, Corner, HalfPlane, Twin
 
 STEP = 1e-5
