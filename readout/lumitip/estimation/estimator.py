@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from lumitip import arguments
 from lumitip.errors import LumitipError
 from lumitip.estimation.estimate import (
+    FAINT_CONTRAST,
     KINDS,
     MISFIT_COUNTS,
     Estimate,
@@ -147,11 +148,10 @@ class PoseEstimator:
             _known(kind)
         read = frame_values(values, self.layout)
         usable = usable_cells(read)
-        known = read[usable]
-        if known.size < LEAST_CELLS or not contrast(known) >= MIN_CONTRAST:
+        frame = self._of_object(read, usable, kind)
+        if frame is None:
             self._last = None
-            return without_contact("covered" if is_covered(known) else "none", usable)
-        frame = self.frame(read, usable)
+            return without_contact("covered" if is_covered(read[usable]) else "none", usable)
         name, found = self._found(frame, kind)
         shape = self._search.shape(name)
         free = drifting(shape, found, self._search.drifts)
@@ -244,6 +244,18 @@ class PoseEstimator:
         stuck = (values <= _END_COUNTS) | (values >= FULL - _END_COUNTS)
         counts = self._gains / rise
         return Frame(light / self._gains, scale, counts, full, self._huber, stuck)
+
+    def _of_object(self, read: Floats, usable: NDArray[np.bool_], kind: str | None) -> Frame | None:
+        """The frame if it shows an object: by its contrast or, where that is faint, by its likeness
+        to one of the bank."""
+        known = read[usable]
+        seen = contrast(known) if known.size >= LEAST_CELLS else 0.0
+        if seen < FAINT_CONTRAST:
+            return None
+        frame = self.frame(read, usable)
+        faint = seen < MIN_CONTRAST
+        is_object = not faint or (not is_covered(known) and self._search.resembles(kind, frame))
+        return frame if is_object else None
 
     def _found(self, frame: Frame, kind: str | None) -> tuple[str, Fit]:
         search, last = self._search, self._last

@@ -33,6 +33,7 @@ _STARTS = 8  # poses of the bank that are then tried
 _REFUTED = 15.0  # loss behind a tracked line, beyond which a rival of it is dropped
 _GLANCE, _LOOK = 2, 5  # rounds of all starts, and of the best of them
 _BEHIND = 20.0  # loss behind the best, beyond which a start is dropped
+_FAINT_LEFT = 0.25  # share of a faint frame's variance that its best likeness may leave
 _HOPELESS = 2.5  # times the residual of the best bank, beyond which a kind is not fitted
 _SIMPLER = {"edge": 1.0, "cable": 1.1, "corner": 2.0}  # a corner also fits the frame of an edge
 _CLEARLY = 2.5  # times its loss that a bend must save, since any misfit looks slightly bent
@@ -65,6 +66,11 @@ class Search:
     def start(self, kind: str, frame: Frame) -> tuple[Floats, float]:
         """The best pose in the bank of a kind, see `Bank.best`."""
         return self.bank(kind).best(frame.light, (frame.scale > 0.0).astype(np.float64))
+
+    def resembles(self, kind: str | None, frame: Frame) -> bool:
+        """Whether a faint frame is like that of an object: of a kind, or of an edge or a cable."""
+        kinds = (kind,) if kind else ("edge", "cable")
+        return min(self.start(each, frame)[1] for each in kinds) < _FAINT_LEFT
 
     def plain(self, kind: str, pose: Floats, frame: Frame) -> Fit:
         """The fit with the expected optics from a pose of the bank."""
