@@ -1,7 +1,7 @@
 """Design to output folder: only what changed is built again, on all cores."""
 
 import os
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -135,9 +135,11 @@ class _Run:
 
     def __init__(self, out: Path, design: "Design", progress: Progress) -> None:
         from lumitip_fab.pipeline.dependencies import FieldHashes
+        from lumitip_fab.pipeline.unfinished import Unfinished
 
         self.out, self.design, self.progress = out, design, progress
         self.before = manifest.read(out)
+        self.unfinished = Unfinished(out, self.before)
         self.hashes = FieldHashes(design)
         self.files: dict[str, manifest.Entry] = {}
         self.tasks: dict[str, manifest.Ran] = {}
@@ -156,8 +158,7 @@ class _Run:
         asked = tuple(step for step in steps if not only or step.name in only)
         if only:
             self._keep_others({task.name for task in tasks(asked, self.design)})
-        for artefact in documents:
-            self._write("documents", artefact)
+        self._write("documents", documents)
         early = tuple(tasks(tuple(step for step in asked if not step.late), self.design))
         late = [tuple(tasks((step,), self.design)) for step in asked if step.late]
         self.all_s = sum(task.step.takes_s for some in (early, *late) for task in some)
@@ -195,8 +196,7 @@ class _Run:
         fixed = {task.name: task.fixed() for task in stale}
         takes_s = {task.name: task.step.takes_s for task in stale}
         for result in run_tasks(stale, files):
-            for artefact in result.artefacts:
-                self._write(result.task, artefact)
+            self._write(result.task, result.artefacts)
             needs = result.dependencies
             key = needs.key(self.hashes, versions, *fixed[result.task])
             self.tasks[result.task] = manifest.Ran(key, needs.fields, needs.files)
@@ -217,9 +217,17 @@ class _Run:
 
         return Files(self.out, {path: Made(e.sha256, e.facts) for path, e in self.files.items()})
 
-    def _write(self, task: str, artefact: "Artefact") -> None:
-        entry = self.files[artefact.path] = manifest.entry(artefact, task)
-        if manifest.sha256_of(self.out / artefact.path) != entry.sha256:
+    def _write(self, task: str, artefacts: "Sequence[Artefact]") -> None:
+        mine = {artefact.path: manifest.entry(artefact, task) for artefact in artefacts}
+        self.files |= mine
+        changed = [
+            artefact
+            for artefact in artefacts
+            if manifest.sha256_of(self.out / artefact.path) != mine[artefact.path].sha256
+        ]
+        if changed:
+            self.unfinished.announce(changed)
+        for artefact in changed:
             self.written.append(artefact.path)
             manifest.write_file(self.out / artefact.path, artefact.data)
 

@@ -20,7 +20,9 @@ NAME = "manifest.json"
 SCHEMA_VERSION = 3
 PAGE, STAMP = "index.html", ".page.js"
 """The page, and what tells an open one of a watched folder that it was written anew."""
-REPORTS = ("checks.json", "checks.xml", PAGE, STAMP)
+RESULTS = ("checks.json", "checks.xml")
+"""Results of the checks."""
+REPORTS = (*RESULTS, PAGE, STAMP)
 """Files that `make outputs` writes beside those of the build."""
 
 
