@@ -9,7 +9,7 @@ DEV := .venv/.lumitip-dev
 DOCS := .venv/.lumitip-docs
 SITE := .venv/.lumitip-site
 BENCHES = fab boards estimation second_light pose_speed dead_cells published_law learning tolerance goals goals_search accept real_frame real_misfit processing protocol links twin environments mujoco view page watch acceptance corpus mutations
-CHECK = $(BIN)/lumitip-fab check --out $(OUT) --junit $(OUT)/checks.xml --report $(OUT)/checks.json
+CHECK = $(BIN)/lumitip-fab check --out "$(OUT)" --junit "$(OUT)/checks.xml" --report "$(OUT)/checks.json"
 
 .DEFAULT_GOAL := help
 # Where this is set, as in many containers, every process would compile all that it imports.
@@ -36,10 +36,10 @@ $(SITE): $(FAB)
 	@$(PYTHON) generators/setup_venv.py site && touch $@
 
 outputs: $(FAB) ## build DESIGN into OUT, check it, and write its page
-	@$(BIN)/lumitip-fab build $(DESIGN) --out $(OUT)
-	@rm -f $(OUT)/checks.json $(OUT)/checks.xml
-	@$(CHECK) --memory $(OUT)/.checked.json; checked=$$?; \
-	$(BIN)/lumitip-fab page --out $(OUT) && exit $$checked
+	@$(BIN)/lumitip-fab build "$(DESIGN)" --out "$(OUT)"
+	@rm -f "$(OUT)/checks.json" "$(OUT)/checks.xml"
+	@$(CHECK) --memory "$(OUT)/.checked.json"; checked=$$?; \
+	$(BIN)/lumitip-fab page --out "$(OUT)" && exit $$checked
 
 check: $(FAB) ## re-read every file in OUT and prove that they fit
 	$(CHECK)
@@ -47,7 +47,7 @@ check: $(FAB) ## re-read every file in OUT and prove that they fit
 readout: $(READOUT) ## add what reads a fingertip (live view, Bluetooth, serial line) to .venv
 
 watch: $(FAB) ## build and check whenever DESIGN is saved; an open page is loaded again
-	$(BIN)/lumitip-fab watch $(DESIGN) --out $(OUT) --page
+	$(BIN)/lumitip-fab watch "$(DESIGN)" --out "$(OUT)" --page
 
 test: $(DEV) ## run the tests
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadfile

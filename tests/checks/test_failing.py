@@ -17,8 +17,9 @@ from rich.console import Console
 
 from damages import box, carve
 from lumitip_fab.checks import run
+from lumitip_fab.checks.memory import Memory
 from lumitip_fab.checks.result import Measurement
-from lumitip_fab.checks.run import MODULES, Memory, Outcome, as_json, run_checks
+from lumitip_fab.checks.run import MODULES, Outcome, as_json, run_checks
 from lumitip_fab.cli import main, report
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import read_design

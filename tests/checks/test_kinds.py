@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab.checks.run import Memory, run_checks
+from lumitip_fab.checks.memory import Memory
+from lumitip_fab.checks.run import run_checks
 from lumitip_fab.cli import check, main
 from lumitip_fab.cli.build import build
 from lumitip_fab.errors import OutputError

@@ -7,9 +7,11 @@ from typing import Any
 
 import pytest
 
-from lumitip_fab.checks import run
-from lumitip_fab.checks.run import MODULES, Memory, reads, run_checks
+from lumitip_fab.checks import memory, run
+from lumitip_fab.checks.memory import Memory, reads
+from lumitip_fab.checks.run import MODULES, run_checks
 from lumitip_fab.design import Design
+from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline.dependencies import RecordedDesign
 
 pytestmark = pytest.mark.slow
@@ -94,7 +96,7 @@ def test_other_code_or_tools_measure_again(
     monkeypatch: pytest.MonkeyPatch,
     depends: str,
 ) -> None:
-    monkeypatch.setattr(run, depends, lambda: "another")
+    monkeypatch.setattr(memory, depends, lambda: "another")
     run_checks(damaged, ["layout"], Memory(kept, damaged))
     assert measured == ["layout"]
 
@@ -118,6 +120,14 @@ def test_a_spoilt_memory_remembers_nothing(
     spoil(kept)
     run_checks(damaged, ["layout"], Memory(kept, damaged))
     assert measured == ["layout"]
+
+
+def test_a_memory_that_cannot_be_written_is_one_error(damaged: Path, tmp_path: Path) -> None:
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    kept = Memory(blocked / "memory.json", damaged)
+    with pytest.raises(OutputError, match=r"memory\.json: cannot be written"):
+        run_checks(damaged, ["layout"], kept)
 
 
 def test_reports_written_among_the_outputs_do_not_count_as_changes(

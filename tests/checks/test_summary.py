@@ -51,6 +51,10 @@ def folder(tmp_path: Path) -> Path:
         "electronics,LED,W,1,32 on emitter,32,piece,0.3,9.60\n"
         'total,,,,"EUR, 2026-11, assumed: no offer was asked for",,,,83.71\n'
     )
+    (tmp_path / "order.csv").write_text(
+        "item,manufacturer,part,needed,unit,pack,confidence,packs,pack_price,price\n"
+        "to buy for one pair of fingers,,,,,,,,,455.02\n"
+    )
     return tmp_path
 
 
@@ -83,14 +87,14 @@ def test_the_tightest_of_each_check_without_what_is_drawn_at_its_limit() -> None
 
 def test_a_run_without_failures_ends_in_few_lines(folder: Path) -> None:
     lines = lines_of(folder, WEB, DRAFT, SHIFT, COUNT, TRACK)
-    assert lines[0].endswith(": 2 files in 2 folders, 0.0 MB")
+    assert lines[0].endswith(": 3 files in 2 folders, 0.0 MB")
     assert lines[1] == "5 checks passed"
     assert [line.split()[:3] for line in lines[3:6]] == [
         ["25.0", "%", "mask.web"],
         ["50.0", "%", "mask.position"],
         ["100.0", "%", "mould.draft"],
     ]
-    assert "83.71 EUR (2026-11, assumed)" in lines[6]
+    assert "83.71 EUR (2026-11, assumed), 455.02 EUR in whole packs" in lines[6]
     assert "manual.html" in lines[7]
     assert "checks.json" in lines[7]
     assert len(lines) == 8
@@ -148,9 +152,11 @@ def test_lines_stay_within_a_terminal(folder: Path) -> None:
     assert line.endswith("…")
 
 
-def test_without_a_bill_there_is_no_price(folder: Path) -> None:
-    (folder / "bom.csv").write_text("torn")
-    assert any("has no total" in line for line in lines_of(folder, WEB))
+@pytest.mark.parametrize("name", ["bom.csv", "order.csv"])
+@pytest.mark.parametrize("text", ["torn", "", "item,price\ntotal,\n"])
+def test_without_a_total_there_is_no_price(folder: Path, name: str, text: str) -> None:
+    (folder / name).write_text(text)
+    assert any(f"{folder / name} has no total" in line for line in lines_of(folder, WEB))
 
 
 def test_every_parameter_that_is_named_exists() -> None:

@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from lumitip_fab.checks.run import MODULES, Memory, run_checks
+from lumitip_fab.checks.memory import Memory
+from lumitip_fab.checks.run import MODULES, run_checks
 from lumitip_fab.cli import main
 from lumitip_fab.diff.checks import MEMORY
 

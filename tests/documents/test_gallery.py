@@ -1,5 +1,6 @@
 """The gallery: its figures are those of the presets, and each preset is shown."""
 
+import csv
 import json
 import re
 import tomllib
@@ -46,6 +47,16 @@ def test_the_figures_of_a_build_are_those_of_the_gallery(
 ) -> None:
     found = preset_figures.built(built(name))
     assert near(found, name), REMEDY
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", ["README.md", "docs/index.md"])
+def test_pages_have_the_price_of_whole_packs(page: str, built: Callable[[str], Path]) -> None:
+    text = (FILE.parents[2] / page).read_text("utf-8")
+    (stated,) = re.findall(r"some (\d+) EUR", text)
+    with (built("fingertip") / "order.csv").open(encoding="utf-8", newline="") as file:
+        *_, last = csv.DictReader(file)
+    assert float(stated) == pytest.approx(float(last["price"]), rel=0.05)
 
 
 def near(found: dict[str, object], name: str) -> bool:

@@ -1,6 +1,7 @@
 """The command line: exit codes, messages, and how quickly it answers."""
 
 import json
+import shlex
 import subprocess
 import sys
 from collections.abc import Callable
@@ -60,7 +61,10 @@ def test_init_copies_the_design_folder_and_overwrites_nothing(
 ) -> None:
     target = tmp_path / "[red]mine :smile:"
     assert main(["init", str(target)]) == 0
-    assert capsys.readouterr().out.startswith(f"{target}: edit fingertip.toml")
+    said = capsys.readouterr().out
+    assert said.startswith(f"{target}: edit fingertip.toml")
+    command = shlex.split(said.partition("then: ")[2])
+    assert command[2] == str(target / "fingertip.toml"), "a name with spaces is one word"
     assert (target / "fingertip.toml").is_file()
     assert (target / "parts" / "leds.toml").is_file()
     (target / "fingertip.toml").write_text("mine")

@@ -187,6 +187,24 @@ def test_the_gripper_moves_alone_before_the_fingers_are_on(written: Written) -> 
             assert step.index("plug the socket") < step.index("activate the gripper")
 
 
+@pytest.mark.parametrize(
+    ("diode", "preset", "warned"),
+    [("none", "published", True), ("1N5819HW", "published", False), ("none", "integrated", False)],
+)
+def test_usb_is_out_before_the_flange_feeds_the_controller(
+    written: Written, diode: str, preset: str, warned: bool
+) -> None:
+    """Without a diode the plug of USB and the flange's supply feed each other."""
+    step = steps(written({"breakout.feed_diode": diode}, preset))
+    assert step.count("Unplug USB from the controller first") == warned
+
+
+def test_a_flange_is_tried_with_twice_the_load(written: Written) -> None:
+    step = steps(written())
+    assert step.index("flange bolts") < step.index("hang twice your load on the gripper once")
+    assert "twice your load" not in steps(written({"flange.enabled": False}))
+
+
 def test_the_flange_is_measured_where_it_can_be_reached(written: Written) -> None:
     step = steps(written({}, "flex"))
     board = next(b for b in written({}, "flex").auxiliary_boards if b.name == "flange")

@@ -5,6 +5,7 @@ import json
 import os
 import re
 import subprocess
+from dataclasses import replace
 from html import unescape
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from lumitip_fab.design.encoding import read_design
 from lumitip_fab.diff.folder import read_folder
 from lumitip_fab.site.checks import check_rows
 from lumitip_fab.site.folder import Folder
-from lumitip_fab.site.tables import prints
+from lumitip_fab.site.tables import prints, unmarked
 from lumitip_fab.site.targets import Targets
 from site_page import SIZES, Opened, axe
 
@@ -195,6 +196,25 @@ def test_the_head_has_the_whole_time_and_both_sums(opened: Opened, site: Path) -
     with (site / "order.csv").open(encoding="utf-8", newline="") as file:
         packs = float(list(csv.DictReader(file))[-1]["price"])
     assert f"{packs:.0f} EUR if whole packs are bought." in answers[0]
+
+
+def test_the_order_comes_after_what_nobody_has_measured(opened: Opened, site: Path) -> None:
+    """The marked ends of the published LED and photodetector are inferred."""
+    tab = opened()
+    (first,) = (t for t in tab.locator(".answer").all_text_contents() if "What is first?" in t)
+    assert "Measure, then order" in first and "an LED and a photodetector" in first
+    stop = str(tab.locator("#boards .stop").text_content())
+    assert stop.startswith("Stop: ") and "an LED and a photodetector" in stop
+    folder = Folder.of(site)
+    packages = folder.design.packages
+    led, detector = (
+        part.model_copy(update={"marked_confidence": "measured"})
+        for part in (packages.led, packages.photodetector)
+    )
+    known = replace(packages, led=led, photodetector=detector)
+    design = replace(folder.design, packages=replace(packages, led=led))
+    assert unmarked(replace(folder, design=design)) == ["a photodetector"]
+    assert unmarked(replace(folder, design=replace(design, packages=known))) == []
 
 
 def test_every_line_of_the_bill_and_every_print_is_there(opened: Opened, site: Path) -> None:

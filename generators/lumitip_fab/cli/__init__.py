@@ -6,6 +6,7 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 from lumitip.command_table import add_commands
@@ -69,7 +70,7 @@ def _print_rejection(options: argparse.Namespace, error: "InputError") -> None:
         print(json.dumps({"problems": problems, "remedies": remedies[1:]}, indent=1))
     print(error, *remedies, sep="\n", file=sys.stderr)
     if plan.complete and hasattr(options, "file"):
-        print(f"lumitip-fab fix {options.file} writes them.", file=sys.stderr)
+        print(f"lumitip-fab fix {quote(str(options.file))} writes them.", file=sys.stderr)
 
 
 def command_parser() -> argparse.ArgumentParser:

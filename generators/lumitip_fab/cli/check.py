@@ -6,7 +6,8 @@ import os
 from contextlib import nullcontext
 from pathlib import Path
 
-from lumitip_fab.checks.run import MODULES, Memory, Outcome, as_json, run_checks
+from lumitip_fab.checks.memory import Memory
+from lumitip_fab.checks.run import MODULES, Outcome, as_json, run_checks
 from lumitip_fab.cli import report, summary
 from lumitip_fab.cli.screen import ERR, FAILED, OUT
 from lumitip_fab.errors import OutputError

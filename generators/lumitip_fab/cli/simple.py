@@ -5,6 +5,7 @@ import json
 import shutil
 import sys
 from pathlib import Path
+from shlex import quote
 
 from lumitip_fab.cli.screen import ERR, FAILED, OUT, REFUSED
 
@@ -25,7 +26,7 @@ def init(options: argparse.Namespace) -> int:
     if not options.quiet:
         OUT.print(
             f"{target}: edit fingertip.toml, then: lumitip-fab build "
-            f"{target / 'fingertip.toml'} --out outputs"
+            f"{quote(str(target / 'fingertip.toml'))} --out outputs"
         )
     return 0
 

@@ -42,7 +42,7 @@ def parameters_of(check: str) -> tuple[str, ...]:
 
 TIGHTEST = 5
 MOST_FAILURES = 10
-MANUAL, BILL = "manual/manual.html", "bom.csv"
+MANUAL, BILL, ORDER = "manual/manual.html", "bom.csv", "order.csv"
 
 
 def print_summary(outcome: Outcome, out: Path, report: Path | None, console: Console) -> None:
@@ -118,16 +118,23 @@ def _force(out: Path) -> Iterator[str]:
 
 
 def _price(out: Path) -> str:
-    """The sum of the bill of materials, with the date and trust that it states."""
-    try:
-        file = io.StringIO(read_plain(out / BILL).decode(), newline="")
-        total = [row for row in csv.reader(file) if row and row[0] == "total"]
-        note, price = total[-1][4], float(total[-1][-1])
-    except (OSError, ValueError, IndexError, csv.Error):
-        return f"price: {out / BILL} has no total"
+    """What a pair uses and what is bought for it in whole packs, with the date and trust of the
+    prices."""
+    totals = []
+    for name in (BILL, ORDER):
+        try:
+            file = io.StringIO(read_plain(out / name).decode(), newline="")
+            *_, last = csv.DictReader(file)
+            totals.append((float(last["price"]), last.get("for", "")))
+        except (OSError, ValueError, TypeError, KeyError, csv.Error):
+            return f"price: {out / name} has no total"
+    (used, note), (bought, _) = totals
     stated, _, _ = note.partition(":")
     currency, _, trust = stated.partition(", ")
-    return f"price: {price:.2f} {currency} ({trust}), {out / BILL}"
+    return (
+        f"price: {used:.2f} {currency} ({trust}), {bought:.2f} {currency} in whole packs; "
+        f"{out / BILL}, {out / ORDER}"
+    )
 
 
 def _print(console: Console, line: str, style: str = "") -> None:

@@ -9,8 +9,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from lumitip_fab.checks.memory import Memory
 from lumitip_fab.checks.result import Measurement, relative_margin
-from lumitip_fab.checks.run import MODULES, Memory, Outcome, run_checks
+from lumitip_fab.checks.run import MODULES, Outcome, run_checks
 from lumitip_fab.diff.folder import Folder
 from lumitip_fab.pipeline.manifest import REPORTS
 

@@ -53,7 +53,8 @@ def _work(design: Design) -> Iterator[str]:
     if design.flanges:
         found = plugs(design)
         sockets = "".join(_text("plugged", cable=cable, header=header) for header, cable in found)
-        yield _text("connected", sockets=sockets)
+        feeds = bool(found) and design.feed is not None and not design.feed.diode
+        yield _text("connected", sockets=sockets + _text("unplugged") * feeds)
     yield _text("activated", rated_n=design.strength.rated_force_n, greatest=_greatest(design))
     if mount.lugs or any(holder.lugs for holder in design.holders):
         yield _text("tied")

@@ -6,7 +6,7 @@ from typing import Any
 from urllib.parse import quote
 
 from lumitip_fab.site.folder import Folder
-from lumitip_fab.site.tables import Print, duration, totals
+from lumitip_fab.site.tables import Print, duration, totals, unmarked
 
 
 def lead(folder: Folder) -> str:
@@ -46,14 +46,22 @@ def answers(
             '<a href="#prints">Parts</a>',
         ),
         _quality(folder, checks, errors),
-        _answer(
-            "What is first?",
-            "Order the boards",
-            '<a href="#boards">Order files</a>. Meanwhile print '
-            f"{_first(folder)}, then follow the "
-            '<a href="manual/manual.html">build manual</a>.',
-        ),
+        _beginning(folder),
     ]
+
+
+def _beginning(folder: Folder) -> str:
+    """What a maker begins with: what nobody has measured comes before the order."""
+    manual = '<a href="manual/manual.html">build manual</a>'
+    meanwhile = f'<a href="#boards">Order files</a>. Meanwhile print {_first(folder)}'
+    if not (unknown := unmarked(folder)):
+        more = f"The {manual} has you measure the gripper before. {meanwhile}."
+        return _answer("What is first?", "Order the boards", more)
+    more = (
+        f"The {manual} has you measure the gripper, and try which end of {' and '.join(unknown)} "
+        f"is marked. Then: {meanwhile}."
+    )
+    return _answer("What is first?", "Measure, then order", more)
 
 
 def _first(folder: Folder) -> str:

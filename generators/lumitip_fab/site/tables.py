@@ -151,8 +151,15 @@ def figure_table(figures: Iterable[Figure]) -> str:
     return table("Figures beside the publication", headings, rows)
 
 
+def unmarked(folder: Folder) -> list[str]:
+    """Parts whose marked end is neither measured nor read from a data sheet."""
+    packages = folder.design.packages
+    parts = {"an LED": packages.led, "a photodetector": packages.photodetector}
+    return [name for name, part in parts.items() if not part.mark_is_known]
+
+
 def order_table(folder: Folder, targets: Targets) -> str:
-    """The packages that a PCB fab needs, a line for each board."""
+    """The packages that a PCB fab needs, a line for each board, and what to do before."""
     names = [fab.name for fab in folder.design.fabs]
     rows = []
     for board in targets.boards:
@@ -162,7 +169,15 @@ def order_table(folder: Folder, targets: Targets) -> str:
         kicad = " ".join(_link(f, f.rpartition(".kicad_")[2]) for f in sources if _has(folder, f))
         cells = [escape(board), links, kicad]
         rows.append(row(cells, (), targets.of_board(board), f"{board} board"))
-    return table("Order files of the boards", ("board", "for a PCB fab", "KiCad"), rows)
+    orders = table("Order files of the boards", ("board", "for a PCB fab", "KiCad"), rows)
+    if not (unknown := unmarked(folder)):
+        return orders
+    stop = (
+        f"Stop: nobody has measured which end of {' and '.join(unknown)} is marked. Try one of "
+        "each before you order, as step Boards of the manual says: boards with these parts the "
+        "wrong way round stay dark."
+    )
+    return f'<p class="stop"><strong>{stop}</strong></p>{orders}'
 
 
 def file_lists(folder: Folder) -> Iterator[str]:
