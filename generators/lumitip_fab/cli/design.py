@@ -99,6 +99,13 @@ def print_study(found: Study, console: Console) -> None:
         + ", ".join(f"{name} {goal:g}" for name, goal in targets.errors.items())
         + f"; gaps {_listed(targets.gaps_mm)} mm, cables {_listed(targets.cables_mm)} mm"
     )
+    if search.reference.with_fixed:
+        console.print(
+            "[fixed] names another LED or photodetector, and how much light it gives is not known: "
+            "current and pull-up of [fixed] are taken as well exposed. Choose the pull-up again "
+            "when you have the first frames.",
+            soft_wrap=True,
+        )
     if nearest := found.nearest:
         limits = found.task.limits
         over = ", ".join(

@@ -133,6 +133,7 @@ def summary(found: Study) -> dict[str, Any]:
     return {
         "base": found.task.base.sources[0].path.name,
         "fixed": dict(found.task.fixed),
+        "well_exposed": str(found.search.reference),
         "keep_size": found.task.keep_size,
         "goals": found.task.targets.model_dump(exclude_none=True),
         "limits": {
