@@ -115,18 +115,23 @@ class Job:
         return cls(config, changes, prices, sample, key)
 
 
+_WITHOUT_EFFECT = {"prices", "tolerances", "mask_shifts"}
+"""Tables of the catalogue that no figure follows from; prices come by themselves."""
+
+
 def key_of(config: Input, prices: Prices, *others: Any) -> str:
     """SHA-256 of a design, of prices, and of all else that a result depends on.
 
     Args:
-        config: the design's parameters, with the parts that they name.
+        config: the design's parameters, and the catalogue: rules and automatic values read more
+            of it than the parts that the parameters name.
         prices: of its parts.
         others: plain values, records, and the hash of the code.
     """
     inputs = [
         config.parameters.model_dump(),
         sorted(config.automatic),
-        {field: part.model_dump() for field, part in config.parts_by_field().items()},
+        config.catalogue.model_dump(exclude=_WITHOUT_EFFECT),
         prices.model_dump(),
         *others,
         np.__version__,
