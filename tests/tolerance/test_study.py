@@ -17,7 +17,7 @@ from lumitip_fab.derive.making.tolerances import spreads
 from lumitip_fab.errors import InputError, OutputError
 from lumitip_fab.tolerance import report
 from lumitip_fab.tolerance.bench import COLUMNS, Bench
-from lumitip_fab.tolerance.draws import FACTORS, draw
+from lumitip_fab.tolerance.draws import FACTORS, directions, draw
 from lumitip_fab.tolerance.options import Goals, Options
 from lumitip_fab.tolerance.study import (
     MOST_SHIFT_MM,
@@ -101,9 +101,11 @@ def test_the_yield_falls_when_a_tolerance_grows_or_the_goals_tighten(
 def test_the_mask_may_be_less_off_where_the_goals_are_tighter(
     design: Resolved, tried: Bench
 ) -> None:
-    drawn = draw(design.config.catalogue.tolerances, spreads(design.config), 32, 10, 0)
+    table = design.config.catalogue.tolerances
+    drawn = draw(table, spreads(design.config), 32, 10, 0)
+    ways = directions(table, drawn, 0)
     wide, default, narrow = (
-        mask_allowance(tried.errors, drawn, goals)[0]
+        mask_allowance(tried.errors, drawn, ways, goals)[0]
         for goals in (Goals(1.0, 5.0), Goals(), Goals(0.01, 0.05))
     )
     assert narrow is None
@@ -179,7 +181,7 @@ def test_indices_are_printed_with_their_draws_and_deviation(
 def test_the_shift_of_the_masks_saturates(design: Resolved) -> None:
     drawn = draw(design.config.catalogue.tolerances, dict.fromkeys(FACTORS, 1.0), 32, 4, 0)
     exact = {**drawn, "gap": 0.0 * drawn["gap"]}
-    assert mask_allowance(linear, exact, Goals(9, 9)) == (MOST_SHIFT_MM, 1.0)
+    assert mask_allowance(linear, exact, np.ones((4, 2, 2)), Goals(9, 9)) == (MOST_SHIFT_MM, 1.0)
     assert MOST_SHIFT_MM == 1.5
 
 

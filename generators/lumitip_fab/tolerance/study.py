@@ -20,7 +20,7 @@ from lumitip_fab.config.messages import shown_path
 from lumitip_fab.derive.making.tolerances import MODEL_VERSION, fingerprint, spreads
 from lumitip_fab.errors import BuildError, InputError, Problem
 from lumitip_fab.tolerance.bench import COLUMNS, POSE_SETS, Case, bench
-from lumitip_fab.tolerance.draws import FACTORS, Draws, draw
+from lumitip_fab.tolerance.draws import FACTORS, Draws, directions, draw
 from lumitip_fab.tolerance.options import GOOD_PERCENT, MASK_FINGERS, Goals, Options
 from lumitip_fab.tolerance.sobol import indices, mixed
 
@@ -78,7 +78,8 @@ def study(
             for name in names[:_BEST]
         }
         few = take(min(MASK_FINGERS, options.fingers), options.seed)
-        mask_mm, mask_share = mask_allowance(errors, few, options.goals)
+        ways = directions(table, few, options.seed)
+        mask_mm, mask_share = mask_allowance(errors, few, ways, options.goals)
     entries = {
         name: {
             "title": entry.title,
@@ -146,9 +147,17 @@ def case_of(config: Input, layout: Layout, options: Options) -> Case:
     return case
 
 
-def mask_allowance(errors: Errors, drawn: Draws, goals: Goals) -> tuple[float | None, float]:
+def mask_allowance(
+    errors: Errors, drawn: Draws, ways: Floats, goals: Goals
+) -> tuple[float | None, float]:
     """The largest shift of both masks, each in a random direction, up to which `GOOD_PERCENT` of
     the fingers drawn meet the goals after a tare, all their other deviations unchanged.
+
+    Args:
+        errors: of fingers.
+        drawn: their deviations.
+        ways: see `directions`.
+        goals: of a good finger.
 
     Returns:
         The shift, a multiple of `MASK_STEP_MM`; at `MOST_SHIFT_MM` the masks may be off by more.
@@ -157,19 +166,19 @@ def mask_allowance(errors: Errors, drawn: Draws, goals: Goals) -> tuple[float | 
     found, good = None, 0.0
     for steps in range(_MASK_STEPS + 1):
         shift_mm = round(steps * MASK_STEP_MM, 2)
-        share = shifted_yield(errors, drawn, goals, shift_mm)
+        share = shifted_yield(errors, drawn, ways, goals, shift_mm)
         if share < GOOD_PERCENT / 100.0:
             return found, good if steps else share
         found, good = shift_mm, share
     return found, good
 
 
-def shifted_yield(errors: Errors, drawn: Draws, goals: Goals, shift_mm: float) -> float:
+def shifted_yield(
+    errors: Errors, drawn: Draws, ways: Floats, goals: Goals, shift_mm: float
+) -> float:
     """Share of the fingers that meet the goals after a tare if both masks are off by a length, each
-    in a random direction."""
-    way = drawn["mask_shift"].reshape(-1, 2, 2)
-    way = way / np.maximum(np.linalg.norm(way, axis=2, keepdims=True), 1e-9)
-    shifted = {**drawn, "mask_shift": (shift_mm * way).reshape(len(way), 4)}
+    in its direction."""
+    shifted = {**drawn, "mask_shift": (shift_mm * ways).reshape(len(ways), 4)}
     return yield_of(errors(shifted, _TARED)[0], goals)
 
 
