@@ -14,6 +14,7 @@ from lumitip_fab.errors import BuildError, InputError, Problem
 from lumitip_fab.explore.accuracy import Sample
 from lumitip_fab.solve import files
 from lumitip_fab.solve.confirm import EVIDENCE
+from lumitip_fab.solve.folder import outdated, require_own
 from lumitip_fab.solve.goals import read_goals
 from lumitip_fab.solve.holes import FIELD
 from lumitip_fab.solve.judge import excesses
@@ -29,6 +30,7 @@ def run(options: argparse.Namespace) -> int:
     task = read_goals(options.goals)
     asked = Options(options.designs, options.points, options.seed, Sample(seed=options.seed))
     silent = options.quiet or options.json
+    require_own(options.out, files.catalogue(task.base))
     with counted("designs", silent) as progress:
         found = study(task, options.out, asked, options.scheduler, progress)
     written = files.write(found, options.out)
@@ -40,6 +42,12 @@ def run(options: argparse.Namespace) -> int:
     failed = not found.search.front
     for point in found.points[1:] if options.build else ():
         failed |= _fails(options.out / point.name, silent)
+    for folder in outdated(options.out):
+        ERR.print(
+            f"{folder}: was built of another design than {folder}.toml is now: remove the folder, "
+            "or build it again",
+            soft_wrap=True,
+        )
     return FAILED if failed else 0
 
 
