@@ -32,11 +32,12 @@ mask.hole_mm = [2.4, 2.5, 2.6]
 def _study(task: Task, points: int) -> Study:
     """A study with so many points, as if they had been found."""
     found = [Judged((("mask.hole_mm", 2.4 + 0.1 * n),), (), {}, (), 0.0) for n in range(points)]
+    errors = {"edge_mm": 0.1, "gross_percent": 0.0}
     made = [
-        Point(f"point-{n}", one, {"edge_mm": 0.1}, (), SimpleNamespace())  # type: ignore[arg-type]
+        Point(f"point-{n}", one, errors, (), SimpleNamespace())  # type: ignore[arg-type]
         for n, one in enumerate(found, 1)
     ]
-    base = Point("base", found[0], {"edge_mm": 0.1}, (), SimpleNamespace())  # type: ignore[arg-type]
+    base = Point("base", found[0], errors, (), SimpleNamespace())  # type: ignore[arg-type]
     search = Search(found[0], tuple(found), True, 0, Reference(1.0, False))
     return Study(task, Options(), search, (base, *made))
 

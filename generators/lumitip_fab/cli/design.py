@@ -18,7 +18,7 @@ from lumitip_fab.solve.folder import outdated, require_own
 from lumitip_fab.solve.goals import read_goals
 from lumitip_fab.solve.holes import FIELD
 from lumitip_fab.solve.judge import excesses
-from lumitip_fab.solve.study import Options, Study, study
+from lumitip_fab.solve.study import MOST_GROSS_PERCENT, Options, Study, study
 
 _LONG = 8  # numbers
 _LIMITS = {"designs": (8, 100_000), "points": (1, 50), "seed": (0, 2**32 - 1)}
@@ -86,18 +86,20 @@ def print_study(found: Study, console: Console) -> None:
     )
     some = found.task.joined(tuple((axis.field, axis.values[0]) for axis in found.task.axes))
     fields = [field for field, _ in some]
-    for heading in ("", *fields, "edge mm", "edge °", "cable mm", "cable °", "cost", "LEDs mA"):
+    errors = ("edge mm", "edge °", "cable mm", "cable °", "gross %")
+    for heading in ("", *fields, *errors, "cost", "LEDs mA"):
         table.add_column(heading, justify="right")
     for point in found.points:
         values, figures = dict(found.task.joined(point.judged.changes)), point.judged.figures
-        errors = (
+        cells = (
             f"{figures[name]:.3g} / {point.confirmed[name]:.3g}" if name in figures else ""
             for name in ("edge_mm", "edge_deg", "cable_mm", "cable_deg")
         )
         table.add_row(
             point.name,
             *(_brief(values.get(field, _of_base(found.task.base, field))) for field in fields),
-            *errors,
+            *cells,
+            f"{point.confirmed['gross_percent']:.1f}",
             f"{figures['cost']:.2f}",
             f"{figures['current_ma']:.1f}",
         )
@@ -136,8 +138,9 @@ def print_study(found: Study, console: Console) -> None:
         met = [point.name for point in found.points if found.meets(point)]
         expected = "some" if best <= 1.0 else "none"
         console.print(
-            f"The estimator keeps the goals with {', '.join(met) or 'none of these designs'}. "
-            f"By expected errors, which know no ambiguous poses, {expected} of all designs do.",
+            f"Within all limits, and with gross errors in at most {MOST_GROSS_PERCENT:g} % of its "
+            f"poses, the estimator keeps the goals with {', '.join(met) or 'none of these designs'}"
+            f". By expected errors, which know no ambiguous poses, {expected} of all designs do.",
             soft_wrap=True,
         )
 

@@ -20,6 +20,10 @@ from lumitip_fab.solve.information import Expected, expected
 from lumitip_fab.solve.judged import Judged
 from lumitip_fab.solve.search import Progress, Search, search
 
+MOST_GROSS_PERCENT = 1.0
+"""Largest share of the estimator's poses with a gross error where goals are met (%): these hardly
+move an rms error, and a robot acts on each."""
+
 
 @dataclass(frozen=True)
 class Options:
@@ -58,9 +62,12 @@ class Study:
     """The base first."""
 
     def meets(self, point: Point) -> bool:
-        """Whether the estimator's errors with a point keep all goals."""
-        goals = self.task.targets.errors
-        return all(point.confirmed[name] <= goal for name, goal in goals.items())
+        """Whether a point keeps all limits, and the estimator's errors with it all goals and
+        `MOST_GROSS_PERCENT`."""
+        goals = self.task.targets.errors | {"gross_percent": MOST_GROSS_PERCENT}
+        return point.judged.allowed and all(
+            point.confirmed[name] <= goal for name, goal in goals.items()
+        )
 
     @property
     def nearest(self) -> Judged | None:
