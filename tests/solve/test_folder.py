@@ -95,6 +95,12 @@ def test_an_edited_point_is_refused_before_the_search(
     assert edited.read_bytes() == kept
 
 
+def test_a_figure_that_cannot_be_written_is_one_error(task: Task, out: Path) -> None:
+    (out / "front.csv").mkdir(parents=True)
+    with pytest.raises(OutputError, match=r"front\.csv: cannot be written: "):
+        files.write(_study(task, 1), out)
+
+
 def _with_parts(folder: Path) -> Task:
     """A task whose base has a catalogue of its own."""
     (folder / "own/parts").mkdir(parents=True)

@@ -8,9 +8,10 @@ from rich.table import Table
 
 from lumitip_fab.checks.run import run_checks
 from lumitip_fab.cli.build import build
+from lumitip_fab.cli.limits import SEEDS, require_in_range
 from lumitip_fab.cli.screen import ERR, FAILED, OUT, counted
 from lumitip_fab.config.load import Input
-from lumitip_fab.errors import BuildError, InputError, Problem
+from lumitip_fab.errors import FabError
 from lumitip_fab.explore.accuracy import Sample
 from lumitip_fab.solve import files
 from lumitip_fab.solve.confirm import EVIDENCE
@@ -21,12 +22,12 @@ from lumitip_fab.solve.judge import excesses
 from lumitip_fab.solve.study import MOST_GROSS_PERCENT, Options, Study, study
 
 _LONG = 8  # numbers
-_LIMITS = {"designs": (8, 100_000), "points": (1, 50), "seed": (0, 2**32 - 1)}
+_LIMITS = {"designs": (8, 100_000), "points": (1, 50), "seed": SEEDS}
 
 
 def run(options: argparse.Namespace) -> int:
     """Search, write the study, and build its points if asked for."""
-    _require_in_range(options)
+    require_in_range(options, _LIMITS)
     task = read_goals(options.goals)
     asked = Options(options.designs, options.points, options.seed, Sample(seed=options.seed))
     silent = options.quiet or options.json
@@ -51,24 +52,14 @@ def run(options: argparse.Namespace) -> int:
     return FAILED if failed else 0
 
 
-def _require_in_range(options: argparse.Namespace) -> None:
-    faults = [
-        Problem(f"--{name}", 0, "", f"is {value}; {least} to {most} is allowed")
-        for name, (least, most) in _LIMITS.items()
-        if not least <= (value := getattr(options, name)) <= most
-    ]
-    if faults:
-        raise InputError(faults)
-
-
 def _fails(folder: Path, silent: bool) -> bool:
     """Build a point and check it; whether a check fails."""
     try:
         build(folder.with_suffix(".toml"), folder)
-    except (BuildError, InputError) as error:
-        ERR.print(f"{folder}: not built: {error}", soft_wrap=True)
+        outcome = run_checks(folder)
+    except FabError as error:
+        ERR.print(f"{folder}: not built and checked: {error}", soft_wrap=True)
         return True
-    outcome = run_checks(folder)
     if not silent:
         failed = ", ".join(sorted({m.check for m in outcome.failed}))
         result = f"fails {failed}" if failed else f"passes {len(outcome.names)} checks"

@@ -13,7 +13,7 @@ from lumitip_fab.config.load import Input, written
 from lumitip_fab.explore.picture import pictures
 from lumitip_fab.explore.vary import Changes
 from lumitip_fab.paths import design_folder, packaged_design, resolved
-from lumitip_fab.pipeline.manifest import write_file
+from lumitip_fab.pipeline.manifest import write_file, writing
 from lumitip_fab.solve.folder import STUDY, hashes, remove_old, require_own
 from lumitip_fab.solve.goals import Task
 from lumitip_fab.solve.judge import FIGURES
@@ -32,7 +32,7 @@ def write(found: Study, folder: Path) -> list[Path]:
         Its files: `point-N.toml`, `study.json`, `front.csv`, and pictures.
 
     Raises:
-        OutputError: if a user's file would be lost, see `require_own`.
+        OutputError: if a file cannot be written, or a user's would be lost, see `require_own`.
     """
     files = {
         f"{point.name}.toml": parameter_file(found.task, point).encode()
@@ -46,9 +46,10 @@ def write(found: Study, folder: Path) -> list[Path]:
     files[STUDY] = (json.dumps(record, indent=1, ensure_ascii=False) + "\n").encode()
     files["front.csv"] = _front(found)
     files |= _drawn(found)
-    remove_old(folder, {*files, *parts})
-    for name, data in files.items():
-        write_file(folder / name, data)
+    with writing(folder):
+        remove_old(folder, {*files, *parts})
+        for name, data in files.items():
+            write_file(folder / name, data)
     return [folder / name for name in files]
 
 
