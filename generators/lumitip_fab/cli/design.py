@@ -15,13 +15,14 @@ from lumitip_fab.errors import FabError
 from lumitip_fab.explore.accuracy import Sample
 from lumitip_fab.solve import files
 from lumitip_fab.solve.confirm import EVIDENCE
-from lumitip_fab.solve.folder import outdated, require_own
+from lumitip_fab.solve.folder import STUDY, outdated, require_own
 from lumitip_fab.solve.goals import read_goals
 from lumitip_fab.solve.holes import FIELD
 from lumitip_fab.solve.judge import excesses
 from lumitip_fab.solve.study import MOST_GROSS_PERCENT, Options, Study, study
 
 _LONG = 8  # numbers
+_REASONS = 5  # why designs are refused
 _LIMITS = {"designs": (8, 100_000), "points": (1, 50), "seed": SEEDS}
 
 
@@ -41,6 +42,9 @@ def run(options: argparse.Namespace) -> int:
         print_study(found, OUT)
         OUT.print("wrote " + ", ".join(map(str, written)), soft_wrap=True)
     failed = not found.search.front
+    if failed and silent:
+        why = "no design keeps all limits" if found.nearest else "every design is refused"
+        ERR.print(f"{options.goals}: {why}: see {options.out / STUDY}", soft_wrap=True)
     for point in found.points[1:] if options.build else ():
         failed |= _fails(options.out / point.name, silent)
     for folder in outdated(options.out):
@@ -120,10 +124,11 @@ def print_study(found: Study, console: Console) -> None:
             style="bold red",
         )
     elif not search.front:
-        reasons = sorted({text for one in search.designs for text in one.refused})[:5]
         console.print("Every design is refused:", style="bold red")
-        for text in reasons:
-            console.print(f"  {text}", soft_wrap=True)
+        for text, count in found.refused[:_REASONS]:
+            console.print(f"  {text} ({count} of {len(search.designs)})", soft_wrap=True)
+        if (more := len(found.refused) - _REASONS) > 0:
+            console.print(f"  and for {more} more reasons, which study.json has")
     else:
         best = min(one.figures["error"] for one in search.front)
         met = [point.name for point in found.points if found.meets(point)]
