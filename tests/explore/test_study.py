@@ -295,3 +295,12 @@ def test_the_command_refuses_with_every_fault(
     )
     assert told == 2
     assert capsys.readouterr().err.count("--vary: ") == 2
+
+
+def test_pictures_of_an_earlier_study_are_removed_if_all_designs_are_refused(
+    tmp_path: Path,
+) -> None:
+    for name in ("pareto.svg", "pareto.png", "mine.png"):
+        (tmp_path / name).write_bytes(b"old")
+    report.write(Study((), (Found((), (5, 4), {}, ("too wide",)),), "EUR", 1), tmp_path)
+    assert {f.name for f in tmp_path.iterdir()} == {"designs.csv", "designs.json", "mine.png"}

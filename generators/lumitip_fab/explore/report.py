@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from lumitip_fab.explore.front import undominated
-from lumitip_fab.explore.picture import pictures
+from lumitip_fab.explore.picture import KINDS, pictures
 from lumitip_fab.explore.run import Found, Study
 from lumitip_fab.pipeline.manifest import write_file, writing
 
@@ -107,7 +107,8 @@ def front(designs: Sequence[Found]) -> set[int]:
 
 
 def write(study: Study, folder: Path) -> list[Path]:
-    """Write `designs.csv`, `designs.json`, and the front as `pareto.svg` and `pareto.png`.
+    """Write `designs.csv`, `designs.json`, and the front as `pareto.svg` and `pareto.png`, which
+    are removed if every design is refused.
 
     Returns:
         What was written.
@@ -120,6 +121,8 @@ def write(study: Study, folder: Path) -> list[Path]:
     files = {"designs.csv": _csv(rows), "designs.json": _json(study, rows)}
     files |= plot(study, best)
     with writing(folder):
+        for name in {f"pareto.{kind}" for kind in KINDS} - files.keys():
+            (folder / name).unlink(missing_ok=True)  # of an earlier study
         for name, data in files.items():
             write_file(folder / name, data)
     return [folder / name for name in files]
