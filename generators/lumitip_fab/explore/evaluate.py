@@ -23,7 +23,7 @@ from lumitip_fab.errors import InputError, OutputError, Problem
 from lumitip_fab.explore.accuracy import Sample, accuracy
 from lumitip_fab.explore.vary import Changes
 from lumitip_fab.paths import design_folder, parts_file
-from lumitip_fab.pipeline.fingerprint import code_hash
+from lumitip_fab.pipeline.fingerprint import code_hash, tool_version
 
 
 def unpriced(config: Input, prices: Prices, names: set[str]) -> list[Problem]:
@@ -134,7 +134,7 @@ def key_of(config: Input, prices: Prices, *others: Any) -> str:
         config.catalogue.model_dump(exclude=_WITHOUT_EFFECT),
         prices.model_dump(),
         *others,
-        np.__version__,
+        *map(tool_version, ("numpy", "scipy", "shapely")),
     ]
     return hashlib.sha256(canonical(inputs).encode()).hexdigest()
 
