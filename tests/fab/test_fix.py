@@ -1,11 +1,13 @@
 """`fix` changes the values that it must, and nothing else of a file."""
 
+import json
 import stat
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from lumitip_fab.cli import main
 from lumitip_fab.cli.fix import changed_text, fix
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
@@ -73,3 +75,24 @@ def test_a_read_only_file_is_left_as_it_is(file: Any) -> None:
     with pytest.raises(OutputError, match="read-only"):
         fix(path)
     assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize("option", ["", "--json", "--quiet"])
+def test_faults_and_partial_changes_are_named_when_it_gives_up(
+    option: str, file: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = file(WIDE)
+    before = path.read_bytes()
+    part = Plan((Step("too wide", (Remedy("mask.hole_mm", 5.5, 5.8),)),), False)
+    monkeypatch.setattr("lumitip_fab.cli.fix.plan_of", lambda _: part)
+    assert main(["fix", str(path), *([option] if option else [])]) == 2
+    written = capsys.readouterr()
+    assert "not changed; no small changes were found" in written.err
+    assert "mine.toml:3: mask.hole_mm is 5.8" in written.err
+    assert "  mask.hole_mm = 5.5 (now 5.8)" in written.err
+    assert "These do not mend every fault: the others need another design." in written.err
+    assert path.read_bytes() == before
+    if option == "--json":
+        record = json.loads(written.out)
+        assert not record["written"]
+        assert [problem["field"] for problem in record["problems"]] == ["mask.hole_mm"]

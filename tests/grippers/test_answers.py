@@ -1,6 +1,7 @@
 """From the answers to an entry of the catalogue: every fault at once, and a design with it."""
 
 import json
+import shutil
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -175,6 +176,24 @@ def test_no_file_is_lost(fill: Any, config: Input, capsys: pytest.CaptureFixture
         f"{file}: exists, and its content differs. Choose another folder, or add --replace.\n"
     )
     assert file.read_bytes() == mine
+
+
+def test_a_gauge_of_another_finger_takes_the_place_of_the_last(
+    fill: Any, config: Input, design_dir: Path, tmp_path: Path
+) -> None:
+    """The entry is added with the user's file, after a gauge of the published finger was tried."""
+    file = fill("my_jaw", config.catalogue.grippers["two_hole_jaw"])
+    command = ["gripper", "new", "my_jaw", "--answers", str(file), "--quiet"]
+    assert main(command) == 0
+    gauge, entry = (file.with_name(f"my_jaw_{name}") for name in ("gauge.stl", "entry.toml"))
+    first = gauge.read_bytes()
+    shutil.copytree(design_dir, tmp_path / "own")
+    own = tmp_path / "own/thick.toml"
+    own.write_text('extends = "presets/published.toml"\n[stack]\nfloor_mm = 1.5\n')
+    assert main([*command, "--file", str(own), "--add"]) == 0
+    assert gauge.read_bytes() != first
+    entry.write_text(entry.read_text() + "# mine\n")
+    assert main([*command, "--file", str(own)]) == 2, "an entry may have been edited"
 
 
 def test_usage(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

@@ -7,11 +7,10 @@ import pytest
 
 from goals_file import write_goals
 from lumitip.grid import hexagonal_grid
-from lumitip_fab.derive import derive
 from lumitip_fab.errors import InputError
 from lumitip_fab.solve.goals import read_goals
 from lumitip_fab.solve.holes import BY, axis_names, groups, joined
-from lumitip_fab.solve.judge import Job, drive, judge
+from lumitip_fab.solve.judge import Job, Reference, judge
 
 COLUMNS = (5, 4, 5, 4, 5, 4, 5)
 GOALS = """\
@@ -58,10 +57,10 @@ def test_sizes_of_groups_become_one_size_for_each_cell(goals: Path) -> None:
 
 def test_a_design_with_sizes_is_judged_by_them(goals: Path) -> None:
     task = read_goals(goals)
-    names, base_drive = axis_names(COLUMNS, "ring"), drive(derive(task.base))
+    names, reference = axis_names(COLUMNS, "ring"), Reference.of(task)
     errors = []
     for sizes in ((2.5, 2.5, 2.5), (3.0, 2.0, 2.0)):
-        record = judge(Job.of(task, tuple(zip(names, sizes, strict=True)), base_drive))
+        record = judge(Job.of(task, tuple(zip(names, sizes, strict=True)), reference))
         errors.append(record.get("figures", record).get("edge_mm"))
     assert None not in errors
     assert errors[0] != pytest.approx(errors[1], rel=0.03)

@@ -13,7 +13,7 @@ from lumitip_fab.tolerance.bench import AGREED, COLUMNS, Bench
 from lumitip_fab.tolerance.draws import Draws, draw
 from lumitip_fab.tolerance.estimate import gross
 from lumitip_fab.tolerance.options import Goals
-from lumitip_fab.tolerance.study import yield_of
+from lumitip_fab.tolerance.yields import good
 
 
 def drawn(design: Resolved, fingers: int, seed: int) -> Draws:
@@ -86,4 +86,4 @@ def test_a_finger_with_a_gross_error_is_never_good(design: Resolved, tried: Benc
     rows = tried.errors(far, COLUMNS[1:2])[0]
     assert rows[0, 4] > 0.0
     assert rows[1, 4] == 0.0
-    assert yield_of(rows, Goals(2.0, 10.0)) == 0.5
+    assert good(rows, Goals(2.0, 10.0)).mean() == 0.5

@@ -12,7 +12,7 @@ from lumitip_fab.derive.auto.resolve import Resolved
 from lumitip_fab.derive.making.tolerances import fingerprint, known_mask_shift, spreads
 from lumitip_fab.design.making import MaskShift
 from lumitip_fab.docs.wrapping import wrapping_steps
-from lumitip_fab.tolerance.draws import Draws, draw
+from lumitip_fab.tolerance.draws import FACTORS, Draws, directions, draw
 from lumitip_fab.tolerance.options import GOOD_PERCENT, Goals, Options
 from lumitip_fab.tolerance.report import mask_line
 from lumitip_fab.tolerance.study import (
@@ -21,7 +21,7 @@ from lumitip_fab.tolerance.study import (
     case_of,
     mask_allowance,
     on_cores,
-    shifted_yield,
+    shifted_good,
 )
 
 MASK = {
@@ -39,11 +39,12 @@ def test_the_figure_of_the_catalogue_is_what_a_study_finds(design: Resolved) -> 
     table = config.catalogue.tolerances
     take = partial(draw, table, spreads(config), len(layout))
     drawn = take(options.mask_conditions.fingers, options.seed)
+    ways = directions(table, drawn, options.seed)
     assert design.design.mask.shift is not None
     most_mm = design.design.mask.shift.most_mm
     with on_cores(case_of(config, layout, options), None) as errors:
         good = [
-            100.0 * shifted_yield(errors, drawn, options.goals, mm)
+            100.0 * shifted_good(errors, drawn, ways, options.goals, mm).mean()
             for mm in (most_mm, most_mm + MASK_STEP_MM)
         ]
     assert good[1] < GOOD_PERCENT <= good[0]
@@ -61,7 +62,8 @@ def test_the_figure_of_the_catalogue_is_what_a_study_finds(design: Resolved) -> 
 def test_the_shift_is_the_largest_up_to_which_all_hold(
     good: list[float], expected: float | None
 ) -> None:
-    drawn = {"mask_shift": np.ones((1000, 4)), "gap": np.zeros((1000, 1))}
+    drawn = {"mask_shift": np.zeros((1000, 4)), "gap": np.zeros((1000, 1))}
+    ways = np.full((1000, 2, 2), np.sqrt(0.5))
 
     def errors(draws: Draws, _columns: tuple[str, ...]) -> Floats:
         off_mm = np.linalg.norm(draws["mask_shift"][0, :2])
@@ -70,9 +72,32 @@ def test_the_shift_is_the_largest_up_to_which_all_hold(
         rows[0, : round(1000 * (1 - share)), 4] = 1.0
         return rows
 
-    found, share = mask_allowance(errors, drawn, Goals())
+    found, own = mask_allowance(errors, drawn, ways, Goals())
     assert found == expected
-    assert share == pytest.approx(good[round((expected or 0.0) / MASK_STEP_MM)])
+    assert own.mean() == pytest.approx(good[round((expected or 0.0) / MASK_STEP_MM)])
+
+
+@pytest.mark.parametrize(
+    ("distribution", "spread_mm"), [("normal", 0.25), ("normal", 0.0), ("uniform", 0.25)]
+)
+def test_masks_are_shifted_by_the_whole_length_in_any_direction(
+    design: Resolved, distribution: str, spread_mm: float
+) -> None:
+    table = design.config.catalogue.tolerances
+    own = table.mask_shift.model_copy(update={"distribution": distribution})
+    table = table.model_copy(update={"mask_shift": own})
+    drawn = draw(table, dict.fromkeys(FACTORS, 0.1) | {"mask_shift": spread_mm}, 32, 4000, 0)
+    tried: list[Floats] = []
+
+    def errors(draws: Draws, _columns: tuple[str, ...]) -> Floats:
+        tried.append(draws["mask_shift"].reshape(-1, 2))
+        return np.zeros((1, 4000, 5))
+
+    assert shifted_good(errors, drawn, directions(table, drawn, 0), Goals(), 0.4).all()
+    (shifts,) = tried
+    assert np.linalg.norm(shifts, axis=1) == pytest.approx(0.4)
+    sectors = np.histogram(np.arctan2(shifts[:, 1], shifts[:, 0]), 8, (-np.pi, np.pi))[0]
+    assert sectors == pytest.approx(1000, rel=0.12), "crowds nowhere"
 
 
 def test_the_manual_quotes_it_where_the_mask_is_laid(design: Resolved) -> None:

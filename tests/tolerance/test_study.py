@@ -17,7 +17,7 @@ from lumitip_fab.derive.making.tolerances import spreads
 from lumitip_fab.errors import InputError, OutputError
 from lumitip_fab.tolerance import report
 from lumitip_fab.tolerance.bench import COLUMNS, Bench
-from lumitip_fab.tolerance.draws import FACTORS, draw
+from lumitip_fab.tolerance.draws import FACTORS, directions, draw
 from lumitip_fab.tolerance.options import Goals, Options
 from lumitip_fab.tolerance.study import (
     MOST_SHIFT_MM,
@@ -26,9 +26,8 @@ from lumitip_fab.tolerance.study import (
     mask_allowance,
     sensitivities,
     study,
-    wilson,
-    yield_of,
 )
+from lumitip_fab.tolerance.yields import design_effect, good, interval, wilson
 
 FEW = Options(fingers=16, poses=4, seed=2)
 COMMAND = ("--fingers", "16", "--poses", "4", "--seed", "2")
@@ -75,7 +74,7 @@ def test_the_command_writes_the_same_bytes_on_all_cores_and_on_one(
         *COLUMNS,
         "simulated with our own model",
         "No Sobol indices: they need 64 draws or more. Use --fingers 128 or more.",
-        "Fingers are tried at 64 sets of poses in turn.",
+        "Fingers are tried at 64 sets of poses in turn; intervals are as wide",
         "gross errors",
         "Optimistic:",
         "tolerance.png",
@@ -91,8 +90,11 @@ def test_the_yield_falls_when_a_tolerance_grows_or_the_goals_tighten(
     for times in (0.0, 2.0, 5.0):
         wider = {**spread, "mask_shift": times * spread["mask_shift"]}
         rows = tried.errors(draw(table, wider, 32, 20, 0), COLUMNS[1:2])[0]
-        yields.append(yield_of(rows, Goals()))
-        assert yield_of(rows, Goals(0.2, 1.0)) <= yields[-1] <= yield_of(rows, Goals(1.0, 5.0))
+        tight, own, wide = (
+            good(rows, goals).mean() for goals in (Goals(0.2, 1.0), Goals(), Goals(1.0, 5.0))
+        )
+        assert tight <= own <= wide
+        yields.append(own)
     assert yields == sorted(yields, reverse=True)
     assert yields[0] > 0.8
     assert yields[-1] < 0.5
@@ -101,9 +103,11 @@ def test_the_yield_falls_when_a_tolerance_grows_or_the_goals_tighten(
 def test_the_mask_may_be_less_off_where_the_goals_are_tighter(
     design: Resolved, tried: Bench
 ) -> None:
-    drawn = draw(design.config.catalogue.tolerances, spreads(design.config), 32, 10, 0)
+    table = design.config.catalogue.tolerances
+    drawn = draw(table, spreads(design.config), 32, 10, 0)
+    ways = directions(table, drawn, 0)
     wide, default, narrow = (
-        mask_allowance(tried.errors, drawn, goals)[0]
+        mask_allowance(tried.errors, drawn, ways, goals)[0]
         for goals in (Goals(1.0, 5.0), Goals(), Goals(0.01, 0.05))
     )
     assert narrow is None
@@ -115,6 +119,23 @@ def test_the_interval_of_a_yield_narrows_with_more_fingers() -> None:
     assert wilson(0.5, 100) == pytest.approx((0.404, 0.596), abs=1e-3)
     assert wilson(1.0, 50) == pytest.approx((0.929, 1.0), abs=1e-3)
     assert np.diff(wilson(0.9, 1000)) < np.diff(wilson(0.9, 100))
+
+
+def test_fingers_of_one_set_of_poses_make_the_interval_wider() -> None:
+    chance, sets = np.random.default_rng(0), np.arange(640) % 64
+    alone = chance.random(640) < 0.5
+    together = (chance.random(64) < 0.5)[sets]
+    assert design_effect(alone) == pytest.approx(1.0, abs=0.3)
+    assert design_effect(together) == pytest.approx(10.0, rel=0.1)
+    low, high = interval(together)
+    assert high - low == pytest.approx(np.diff(wilson(0.5, 64))[0], rel=0.1)
+    assert design_effect(np.ones(640, bool)) == design_effect(np.zeros(640, bool)) == 1.0
+    # Of many studies with shares of their own for each set, 95 % have the true yield.
+    held = []
+    for _ in range(400):
+        low, high = interval(chance.random(500) < chance.beta(2, 2, 64)[np.arange(500) % 64])
+        held.append(low <= 0.5 <= high)
+    assert np.mean(held) == pytest.approx(0.95, abs=0.03)
 
 
 @pytest.mark.parametrize(
@@ -179,7 +200,7 @@ def test_indices_are_printed_with_their_draws_and_deviation(
 def test_the_shift_of_the_masks_saturates(design: Resolved) -> None:
     drawn = draw(design.config.catalogue.tolerances, dict.fromkeys(FACTORS, 1.0), 32, 4, 0)
     exact = {**drawn, "gap": 0.0 * drawn["gap"]}
-    assert mask_allowance(linear, exact, Goals(9, 9)) == (MOST_SHIFT_MM, 1.0)
+    assert mask_allowance(linear, exact, np.ones((4, 2, 2)), Goals(9, 9))[0] == MOST_SHIFT_MM
     assert MOST_SHIFT_MM == 1.5
 
 

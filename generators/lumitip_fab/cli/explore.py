@@ -2,14 +2,19 @@
 
 import argparse
 
+from lumitip_fab.cli.limits import SEEDS, require_in_range
 from lumitip_fab.cli.screen import OUT, counted
 from lumitip_fab.explore import report
 from lumitip_fab.explore.accuracy import Sample
 from lumitip_fab.explore.run import explore
+from lumitip_fab.explore.vary import MOST_DESIGNS
+
+_LIMITS = {"points": (1, MOST_DESIGNS), "seed": SEEDS}
 
 
 def run(options: argparse.Namespace) -> int:
     """Run a study, with progress."""
+    require_in_range(options, _LIMITS)
     silent = options.quiet or options.json
     with counted("designs", silent) as progress:
         study = explore(

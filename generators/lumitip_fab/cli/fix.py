@@ -12,7 +12,7 @@ import tomlkit
 
 from lumitip_fab.cli.screen import OUT, REFUSED
 from lumitip_fab.config.load import load
-from lumitip_fab.derive.auto.remedies import Plan, Remedy, plan_of
+from lumitip_fab.derive.auto.remedies import Plan, Remedy, plan_of, remedy_lines
 from lumitip_fab.derive.auto.resolve import RuleError, resolve
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline.manifest import write_file
@@ -22,7 +22,8 @@ _MARK = "\ufeff"  # with which some editors begin a file
 
 def run(options: argparse.Namespace) -> int:
     """Change the file, and print what was changed."""
-    plan = fix(options.file)
+    plan, error = _planned(options.file)
+    _write(options.file, plan)
     changes = [step.remedies[0] for step in plan.steps]
     if options.json:
         print(
@@ -30,16 +31,15 @@ def run(options: argparse.Namespace) -> int:
                 {
                     "written": plan.complete and bool(changes),
                     "changes": [vars(change) for change in changes],
+                    "problems": [vars(p) for p in error.problems] if error else [],
                 },
                 indent=1,
             )
         )
-    elif not plan.complete:
-        print(
-            f"{options.file}: not changed; no small changes were found that mend every fault",
-            file=sys.stderr,
-        )
-    elif not options.quiet:
+    if not plan.complete:
+        text = f"{options.file}: not changed; no small changes were found that mend every fault"
+        print(text, error, *remedy_lines(plan), sep="\n", file=sys.stderr)
+    elif not options.quiet and not options.json:
         OUT.print(f"{options.file}: accepted as it is" if not changes else str(options.file))
         for change in changes:
             OUT.print(f"  {change}")
@@ -57,19 +57,28 @@ def fix(file: Path) -> Plan:
         InputError: if the file cannot be read as parameters.
         OutputError: if it cannot be written.
     """
+    plan, _ = _planned(file)
+    _write(file, plan)
+    return plan
+
+
+def _planned(file: Path) -> tuple[Plan, RuleError | None]:
+    """The changes of a parameter file, and its faults; none if it is accepted as it is."""
     config = load(file)
     try:
         resolve(config)
     except RuleError as error:
-        plan = plan_of(error.verdict)
-    else:
-        return Plan((), True)
-    if plan.complete:
-        try:
-            _rewrite(file.resolve(), plan)  # where a link leads
-        except OSError as error:
-            raise OutputError(f"{file}: cannot be written: {error.strerror}") from error
-    return plan
+        return plan_of(error.verdict), error
+    return Plan((), True), None
+
+
+def _write(file: Path, plan: Plan) -> None:
+    if not plan.complete or not plan.steps:
+        return
+    try:
+        _rewrite(file.resolve(), plan)  # where a link leads
+    except OSError as error:
+        raise OutputError(f"{file}: cannot be written: {error.strerror}") from error
 
 
 def _rewrite(file: Path, plan: Plan) -> None:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 _NAME = re.compile(r"[a-z0-9]+(_[a-z0-9]+)*")
 _FINGER = "presets/published.toml"
+_GAUGE = ".stl"
 
 
 def new(options: argparse.Namespace) -> int:
@@ -70,12 +71,14 @@ def _refuse_options(options: argparse.Namespace) -> None:
 
 
 def _write(files: Mapping[Path, bytes], added: Mapping[Path, bytes], replace: bool) -> None:
-    """Write all files, or none where one would be lost; those that were only added to are not."""
+    """Write all files, or none where one would be lost; those that were only added to are not, nor
+    is a gauge, which nobody edits."""
     from lumitip_fab.pipeline.manifest import write_file
 
     text = table_of("grippers/texts.toml")["faults"]["exists"]
     try:
-        lost = [f for f, data in files.items() if f.exists() and f.read_bytes() != data]
+        kept = (file for file in files if file.suffix != _GAUGE)
+        lost = [f for f in kept if f.exists() and f.read_bytes() != files[f]]
         if lost and not replace:
             raise OutputError("\n".join(f"{file}: {text}" for file in lost))
         for file, data in {**files, **added}.items():

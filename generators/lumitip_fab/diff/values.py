@@ -13,7 +13,22 @@ from lumitip_fab.pipeline import manifest
 Entry = dict[str, Any]
 """`name`, `unit`, and the values `a` and `b`; none where one has no such value."""
 Row = dict[str, str]
-_UNITS = {**UNITS, "g": "g", "n": "N", "kg": "kg", "mpa": "MPa", "s": "s", "us": "µs", "hz": "Hz"}
+_UNITS = {
+    **UNITS,
+    **{"g": "g", "n": "N", "kg": "kg", "mpa": "MPa", "s": "s", "us": "µs", "hz": "Hz", "c": "°C"},
+    **{
+        "nf": "nF",
+        "pf": "pF",
+        "ua": "µA",
+        "na": "nA",
+        "a": "A",
+        "uh": "µH",
+        "h": "h",
+        "min": "min",
+    },
+    **{"mm_s": "mm/s", "mm3_s": "mm³/s", "k_per_w": "K/W", "per_v": "1/V", "cm2_ml": "cm²/mL"},
+}
+"""By the end of a field's name, of which the longest counts."""
 _TOTAL = "total"
 _SAME_LINE: tuple[tuple[str, ...], ...] = (
     ("group", "item", "manufacturer", "part", "for"),
@@ -130,7 +145,8 @@ def _entry(name: str, unit: str, a: Any, b: Any) -> Entry:
 
 
 def _unit(name: str) -> str:
-    return next((unit for end, unit in _UNITS.items() if name.endswith(f"_{end}")), "")
+    ends = sorted(_UNITS, key=len, reverse=True)
+    return next((_UNITS[end] for end in ends if name.endswith(f"_{end}")), "")
 
 
 def _numbers(folder: Folder) -> dict[tuple[str, str], float]:

@@ -23,7 +23,7 @@ from lumitip_fab.errors import InputError, OutputError, Problem
 from lumitip_fab.explore.accuracy import Sample, accuracy
 from lumitip_fab.explore.vary import Changes
 from lumitip_fab.paths import design_folder, parts_file
-from lumitip_fab.pipeline.fingerprint import code_hash
+from lumitip_fab.pipeline.fingerprint import code_hash, tool_version
 
 
 def unpriced(config: Input, prices: Prices, names: set[str]) -> list[Problem]:
@@ -115,21 +115,26 @@ class Job:
         return cls(config, changes, prices, sample, key)
 
 
+_WITHOUT_EFFECT = {"prices", "tolerances", "mask_shifts"}
+"""Tables of the catalogue that no figure follows from; prices come by themselves."""
+
+
 def key_of(config: Input, prices: Prices, *others: Any) -> str:
     """SHA-256 of a design, of prices, and of all else that a result depends on.
 
     Args:
-        config: the design's parameters, with the parts that they name.
+        config: the design's parameters, and the catalogue: rules and automatic values read more
+            of it than the parts that the parameters name.
         prices: of its parts.
         others: plain values, records, and the hash of the code.
     """
     inputs = [
         config.parameters.model_dump(),
         sorted(config.automatic),
-        {field: part.model_dump() for field, part in config.parts_by_field().items()},
+        config.catalogue.model_dump(exclude=_WITHOUT_EFFECT),
         prices.model_dump(),
         *others,
-        np.__version__,
+        *map(tool_version, ("numpy", "scipy", "shapely")),
     ]
     return hashlib.sha256(canonical(inputs).encode()).hexdigest()
 

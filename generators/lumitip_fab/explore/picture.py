@@ -4,6 +4,7 @@ import io
 from typing import Any
 
 _DOTS_PER_INCH = 150
+KINDS = ("svg", "png")
 
 
 def pictures(figure: Any, name: str) -> dict[str, bytes]:
@@ -11,9 +12,10 @@ def pictures(figure: Any, name: str) -> dict[str, bytes]:
     from matplotlib import rc_context
 
     files = {}
+    metadata = {"svg": {"Date": None}, "png": {"Software": None}}
     with rc_context({"svg.hashsalt": name, "svg.fonttype": "none"}):
-        for kind, metadata in (("svg", {"Date": None}), ("png", {"Software": None})):
+        for kind in KINDS:
             data = io.BytesIO()
-            figure.savefig(data, format=kind, metadata=metadata, dpi=_DOTS_PER_INCH)
+            figure.savefig(data, format=kind, metadata=metadata[kind], dpi=_DOTS_PER_INCH)
             files[f"{name}.{kind}"] = data.getvalue()
     return files

@@ -12,9 +12,9 @@ from rich.console import Console
 from rich.table import Table
 
 from lumitip_fab.explore.front import undominated
-from lumitip_fab.explore.picture import pictures
+from lumitip_fab.explore.picture import KINDS, pictures
 from lumitip_fab.explore.run import Found, Study
-from lumitip_fab.pipeline.manifest import write_file
+from lumitip_fab.pipeline.manifest import write_file, writing
 
 
 def plot(study: Study, best: Collection[int]) -> dict[str, bytes]:
@@ -107,17 +107,24 @@ def front(designs: Sequence[Found]) -> set[int]:
 
 
 def write(study: Study, folder: Path) -> list[Path]:
-    """Write `designs.csv`, `designs.json`, and the front as `pareto.svg` and `pareto.png`.
+    """Write `designs.csv`, `designs.json`, and the front as `pareto.svg` and `pareto.png`, which
+    are removed if every design is refused.
 
     Returns:
         What was written.
+
+    Raises:
+        OutputError: if a file cannot be written.
     """
     best = front(study.designs)
     rows = [_row(study, n, n in best) for n in range(len(study.designs))]
     files = {"designs.csv": _csv(rows), "designs.json": _json(study, rows)}
     files |= plot(study, best)
-    for name, data in files.items():
-        write_file(folder / name, data)
+    with writing(folder):
+        for name in {f"pareto.{kind}" for kind in KINDS} - files.keys():
+            (folder / name).unlink(missing_ok=True)  # of an earlier study
+        for name, data in files.items():
+            write_file(folder / name, data)
     return [folder / name for name in files]
 
 

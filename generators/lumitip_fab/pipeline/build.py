@@ -28,13 +28,19 @@ def locked(folder: Path) -> Iterator[None]:
     """Hold a folder, which is made if missing; leaves no file behind, even when killed.
 
     Raises:
-        OutputError: if another build holds it.
+        OutputError: if another build holds it, or it cannot be a folder.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    if fcntl is None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        handle = os.open(folder, os.O_RDONLY) if fcntl else None
+    except OSError as error:
+        raise OutputError(
+            f"{folder}: cannot be written: {error.strerror}; a folder is needed, and is made if "
+            "missing. Choose another with --out."
+        ) from error
+    if fcntl is None or handle is None:
         yield
         return
-    handle = os.open(folder, os.O_RDONLY)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         yield
@@ -100,17 +106,12 @@ def build(
         return Report(before.origin, (), (), (), tuple(before.tasks))
     _require_files(out)
     design, documents = resolved()
-    try:
-        with locked(out):
-            run = _Run(out, design, progress or _silent)
-            report = run.all(documents, steps, only)
-            if not only:
-                remember(out, origin_hash)
-            return report
-    except OSError as error:
-        # Of two names the second is the file's own; the first is what it was written under.
-        at = error.filename2 or error.filename or out
-        raise OutputError(f"{at}: cannot be written: {error.strerror}") from error
+    with manifest.writing(out), locked(out):
+        run = _Run(out, design, progress or _silent)
+        report = run.all(documents, steps, only)
+        if not only:
+            remember(out, origin_hash)
+        return report
 
 
 def _require_known(only: Collection[str], steps: "tuple[Step, ...]") -> None:

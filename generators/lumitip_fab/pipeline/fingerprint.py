@@ -37,6 +37,8 @@ SHARED = (
     "typeface.py",
 )
 LAYOUT = ("errors.py", "grid.py", "layout.py")
+JUDGING = ("estimation", "processing", "protocol", "twin", "arguments.py", "frame.py", "values.py")
+"""Modules of the robot's side that studies judge designs with."""
 _SOURCES = {".css", ".kicad_sch", ".kicad_sym", ".md", ".py", ".svg", ".toml", ".txt"}
 
 
@@ -52,7 +54,7 @@ def code_hash(*parts: str) -> str:
     if "firmware" in parts:
         roots += [Path(lumitip.__file__).parent / "protocol", *firmware_sources()]
     if {"explore", "solve"} & {*parts}:
-        roots += [Path(lumitip.__file__).parent / name for name in ("twin", "estimation")]
+        roots += [PACKAGE / "config", *(Path(lumitip.__file__).parent / name for name in JUDGING)]
     return _hash(f for r in roots for f in (_sources(r) if r.is_dir() else [r]))
 
 

@@ -5,6 +5,8 @@ import json
 import os
 import stat
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path, PurePath
 
@@ -12,6 +14,7 @@ import numpy as np
 
 from lumitip_fab.design.encoding import canonical, encoded
 from lumitip_fab.design.frames import Matrix
+from lumitip_fab.errors import OutputError
 from lumitip_fab.paths import read_plain
 from lumitip_fab.pipeline.artefact import Artefact, Facts
 from lumitip_fab.pipeline.dependencies import Dependencies
@@ -176,6 +179,17 @@ def write_file(path: Path, data: bytes, mode: int = 0o644) -> None:
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+
+
+@contextmanager
+def writing(folder: Path) -> Iterator[None]:
+    """Raise an `OutputError` for a file of a folder that cannot be written or removed."""
+    try:
+        yield
+    except OSError as error:
+        # Of two names the second is the file's own; the first is what it was written under.
+        at = error.filename2 or error.filename or folder
+        raise OutputError(f"{at}: cannot be written: {error.strerror}") from error
 
 
 def content_hash(out: Path) -> str:

@@ -12,8 +12,9 @@ import tomli_w
 from lumitip_fab.config.load import Input, written
 from lumitip_fab.explore.picture import pictures
 from lumitip_fab.explore.vary import Changes
-from lumitip_fab.paths import design_folder, packaged_design
-from lumitip_fab.pipeline.manifest import write_file
+from lumitip_fab.paths import design_folder, packaged_design, resolved
+from lumitip_fab.pipeline.manifest import write_file, writing
+from lumitip_fab.solve.folder import STUDY, hashes, remove_old, require_own
 from lumitip_fab.solve.goals import Task
 from lumitip_fab.solve.judge import FIGURES
 from lumitip_fab.solve.study import Point, Study, summary
@@ -29,19 +30,26 @@ def write(found: Study, folder: Path) -> list[Path]:
 
     Returns:
         Its files: `point-N.toml`, `study.json`, `front.csv`, and pictures.
+
+    Raises:
+        OutputError: if a file cannot be written, or a user's would be lost, see `require_own`.
     """
     files = {
         f"{point.name}.toml": parameter_file(found.task, point).encode()
         for point in found.points[1:]
     }
-    files |= _catalogue(found.task.base)
-    files["study.json"] = (json.dumps(summary(found), indent=1, ensure_ascii=False) + "\n").encode()
+    parts = catalogue(found.task.base)
+    require_own(folder, parts)
+    if design_folder(found.task.base.sources[0].path) != resolved(folder):
+        files |= parts
+    record = {**summary(found), "files": hashes(files)}
+    files[STUDY] = (json.dumps(record, indent=1, ensure_ascii=False) + "\n").encode()
     files["front.csv"] = _front(found)
     files |= _drawn(found)
-    for name, data in files.items():
-        write_file(folder / name, data)
-    for old in set(folder.glob("point-*.toml")) - {folder / name for name in files}:
-        old.unlink()
+    with writing(folder):
+        remove_old(folder, {*files, *parts})
+        for name, data in files.items():
+            write_file(folder / name, data)
     return [folder / name for name in files]
 
 
@@ -68,7 +76,7 @@ def _values(task: Task, changes: Changes) -> Changes:
     return (*task.fixed, *own, *((("grid.columns", columns),) if task.keep_size else ()))
 
 
-def _catalogue(base: Input) -> dict[str, bytes]:
+def catalogue(base: Input) -> dict[str, bytes]:
     """The parts of a design folder that has its own: the points need them beside them."""
     folder = design_folder(base.sources[0].path)
     if folder.resolve() == packaged_design().resolve():

@@ -113,6 +113,8 @@ class Task:
 
     base: Input
     """With the fixed values."""
+    written: Input
+    """The base as its file has it, without the fixed values."""
     fixed: Changes
     targets: Targets
     limits: Limits
@@ -168,7 +170,7 @@ def read_goals(path: Path) -> Task:
     if unpriced := without_price(task_base, axes):
         raise InputError(unpriced)
     keep_size = file.vary.get("grid", {}).get("columns") == KEEP_SIZE
-    return Task(task_base, fixed, file.goals, file.limits, axes, keep_size)
+    return Task(task_base, base, fixed, file.goals, file.limits, axes, keep_size)
 
 
 def _tuples(value: Any) -> Any:

@@ -14,7 +14,7 @@ from lumitip_fab.errors import InputError
 from lumitip_fab.explore.evaluate import Record, cost, key_of, rounded
 from lumitip_fab.explore.vary import Changes
 from lumitip_fab.pipeline.fingerprint import code_hash
-from lumitip_fab.solve.goals import Limits, Targets, Task
+from lumitip_fab.solve.goals import WITHOUT_LIGHT, Limits, Targets, Task
 from lumitip_fab.solve.information import Grasps, expected
 
 ERRORS = ("edge_mm", "edge_deg", "cable_mm", "cable_deg")
@@ -37,24 +37,51 @@ MOST_EXPOSURE = 1.3
 
 
 @dataclass(frozen=True)
+class Reference:
+    """The light that designs are compared with, which is taken as well exposed."""
+
+    drive: float
+    """See `drive`."""
+    with_fixed: bool
+    """Whether it is that of the base with the fixed values, which name another LED or
+    photodetector: how its light compares with that of the base's own file is not known."""
+
+    @classmethod
+    def of(cls, task: Task) -> "Reference":
+        """The reference of a task.
+
+        Raises:
+            InputError: if the base is refused, with or without the fixed values.
+        """
+        written = resolve(task.written)
+        if not task.fixed:
+            return cls(drive(written.design), False)
+        fixed = resolve(task.base)
+        other = any(written.config.value(n) != fixed.config.value(n) for n in WITHOUT_LIGHT)
+        return cls(drive((fixed if other else written).design), other)
+
+    def __str__(self) -> str:
+        return "the base with [fixed]" if self.with_fixed else "the base"
+
+
+@dataclass(frozen=True)
 class Job:
     """All that judging a design needs, on whatever machine."""
 
     config: Input
     changes: Changes
     targets: Targets
-    base_drive: float
-    """Of the base, see `drive`."""
+    reference: Reference
     key: str
     """SHA-256 of everything that the result depends on."""
 
     @classmethod
-    def of(cls, task: Task, changes: Changes, base_drive: float) -> "Job":
+    def of(cls, task: Task, changes: Changes, reference: Reference) -> "Job":
         """The job of a design of a task."""
         config = task.design(changes)
         prices, code = config.catalogue.prices, code_hash("explore", "solve")
-        key = key_of(config, prices, task.targets.model_dump(), base_drive, code)
-        return cls(config, changes, task.targets, base_drive, key)
+        key = key_of(config, prices, task.targets.model_dump(), reference.drive, code)
+        return cls(config, changes, task.targets, reference, key)
 
 
 def judge(job: Job) -> Record:
@@ -64,14 +91,14 @@ def judge(job: Job) -> Record:
     except InputError as error:
         return {"key": job.key, "refused": [p.text for p in error.problems]}
     design, layout = resolved.design, resolved.design.layout
-    exposure = drive(design) / job.base_drive
+    exposure = drive(design) / job.reference.drive
     if len(layout) < LEAST_CELLS:
         text = f"grid.columns has {len(layout)} cells; a pose needs at least {LEAST_CELLS}"
         return {"key": job.key, "refused": [text]}
     if exposure > MOST_EXPOSURE:
         text = (
-            f"LED current times pull-up is {exposure:.2f} times that of the base, which saturates "
-            f"free cells; at most {MOST_EXPOSURE:g} times is judged"
+            f"LED current times pull-up is {exposure:.2f} times that of {job.reference}, which "
+            f"saturates free cells; at most {MOST_EXPOSURE:g} times is judged"
         )
         return {"key": job.key, "refused": [text]}
     grasps = Grasps(job.targets.gaps_mm, job.targets.cables_mm)

@@ -9,14 +9,13 @@ import numpy as np
 from scipy.stats import qmc
 
 from lumitip.errors import how_to_install
-from lumitip_fab.derive import derive
 from lumitip_fab.errors import BuildError, InputError, Problem
 from lumitip_fab.explore.evaluate import Journal, Record
 from lumitip_fab.explore.pool import pool
 from lumitip_fab.explore.vary import Changes
 from lumitip_fab.pipeline.build import locked
 from lumitip_fab.solve.goals import Task
-from lumitip_fab.solve.judge import OBJECTIVES, Job, drive, excesses, judge
+from lumitip_fab.solve.judge import OBJECTIVES, Job, Reference, excesses, judge
 from lumitip_fab.solve.judged import Judged, Point, front
 from lumitip_fab.solve.ranges import is_number
 from lumitip_fab.solve.refine import refine
@@ -35,11 +34,13 @@ class Search:
     """All designs of a search, in the order in which they were asked for."""
 
     base: Judged
+    """With the fixed values."""
     designs: tuple[Judged, ...]
     complete: bool
     """Whether they are all combinations."""
     evaluated: int
     """How many were evaluated now; the others were known."""
+    reference: Reference
 
     @property
     def front(self) -> tuple[Judged, ...]:
@@ -68,14 +69,15 @@ def search(
     complete = task.designs <= designs
     if not complete:
         _require_pymoo()
-    base_drive = drive(derive(task.base))
+    reference = Reference.of(task)
     with locked(out), Journal(out) as journal, pool(judge, POPULATION, scheduler) as evaluated:
         most = min(designs, task.designs)
-        judges = _Judges(task, base_drive, journal, evaluated)
+        judges = _Judges(task, reference, journal, evaluated)
         judges.progress = lambda: progress(min(len(judges.designs), most), most)
         base = judges.judged([()])[0]
         if base.refused:
-            raise InputError([Problem("base", 0, "", text) for text in base.refused])
+            place = "base with [fixed]" if task.fixed else "base"
+            raise InputError([Problem(place, 0, "", text) for text in base.refused])
         if complete:
             every = list(itertools.product(*(range(len(axis.values)) for axis in task.axes)))
             for begin in range(0, len(every), POPULATION):
@@ -85,7 +87,7 @@ def search(
             _until(round(GENETIC * designs), generations, judges)
             refine(task, judges.designs, judges, designs)
             _until(designs, generations, judges)
-    return Search(base, tuple(judges.designs.values()), complete, judges.evaluated)
+    return Search(base, tuple(judges.designs.values()), complete, judges.evaluated, reference)
 
 
 def _until(designs: int, generations: Iterator[None], judges: "_Judges") -> None:
@@ -100,11 +102,11 @@ class _Judges:
     def __init__(
         self,
         task: Task,
-        base_drive: float,
+        reference: Reference,
         journal: Journal,
         evaluate: Callable[[Sequence[Job]], Iterator[Record]],
     ) -> None:
-        self._task, self._base_drive = task, base_drive
+        self._task, self._reference = task, reference
         self._journal, self._evaluate = journal, evaluate
         self._records: dict[str, Record] = dict(journal.known)
         self.designs: dict[Point, Judged] = {}
@@ -121,7 +123,7 @@ class _Judges:
 
     def judged(self, each: Sequence[Changes]) -> list[Judged]:
         """Designs by their changes."""
-        jobs = [Job.of(self._task, changes, self._base_drive) for changes in each]
+        jobs = [Job.of(self._task, changes, self._reference) for changes in each]
         missing = {job.key: job for job in jobs if job.key not in self._records}
         for record in self._evaluate(list(missing.values())):
             self._journal.add(record)

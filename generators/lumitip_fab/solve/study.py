@@ -1,5 +1,6 @@
 """A whole study: search, points of the front, and the estimator's errors with each."""
 
+from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
@@ -17,8 +18,13 @@ from lumitip_fab.explore.evaluate import rounded
 from lumitip_fab.solve import confirm
 from lumitip_fab.solve.goals import Task
 from lumitip_fab.solve.information import Expected, expected
+from lumitip_fab.solve.judge import excesses
 from lumitip_fab.solve.judged import Judged
 from lumitip_fab.solve.search import Progress, Search, search
+
+MOST_GROSS_PERCENT = 1.0
+"""Largest share of the estimator's poses with a gross error where goals are met (%): these hardly
+move an rms error, and a robot acts on each."""
 
 
 @dataclass(frozen=True)
@@ -58,15 +64,23 @@ class Study:
     """The base first."""
 
     def meets(self, point: Point) -> bool:
-        """Whether the estimator's errors with a point keep all goals."""
-        goals = self.task.targets.errors
-        return all(point.confirmed[name] <= goal for name, goal in goals.items())
+        """Whether a point keeps all limits, and the estimator's errors with it all goals and
+        `MOST_GROSS_PERCENT`."""
+        goals = self.task.targets.errors | {"gross_percent": MOST_GROSS_PERCENT}
+        return point.judged.allowed and all(
+            point.confirmed[name] <= goal for name, goal in goals.items()
+        )
 
     @property
     def nearest(self) -> Judged | None:
         """Without any design that keeps all limits: the one that is closest to them."""
         possible = [one for one in self.search.designs if one.figures]
         return None if self.search.front else min(possible, key=_excess, default=None)
+
+    @property
+    def refused(self) -> list[tuple[str, int]]:
+        """Reasons why designs are refused, and how many each, the most frequent first."""
+        return Counter(text for one in self.search.designs for text in one.refused).most_common()
 
 
 def _excess(one: Judged) -> float:
@@ -128,11 +142,26 @@ def _spread(front: Sequence[Judged], count: int) -> list[Judged]:
     return [front[n] for n in at]
 
 
+def _nearest(found: Study) -> dict[str, Any] | None:
+    """The design that is closest to the limits, and by what share it is beyond them; none where a
+    design keeps them all, or all are refused."""
+    if (one := found.nearest) is None:
+        return None
+    beyond = excesses(one.figures, found.task.limits).items()
+    return {
+        "changes": dict(one.changes),
+        "columns": list(one.columns),
+        "figures": dict(sorted(one.figures.items())),
+        "beyond": {name: rounded(share) for name, share in beyond if share > 0.0},
+    }
+
+
 def summary(found: Study) -> dict[str, Any]:
     """The study as plain JSON."""
     return {
         "base": found.task.base.sources[0].path.name,
         "fixed": dict(found.task.fixed),
+        "well_exposed": str(found.search.reference),
         "keep_size": found.task.keep_size,
         "goals": found.task.targets.model_dump(exclude_none=True),
         "limits": {
@@ -143,6 +172,8 @@ def summary(found: Study) -> dict[str, Any]:
         "vary": {axis.field: list(axis.values) for axis in found.task.axes},
         "designs": found.task.designs,
         "judged": len(found.search.designs),
+        "refused": [{"reason": text, "designs": count} for text, count in found.refused],
+        "nearest": _nearest(found),
         "complete": found.search.complete,
         "seed": found.options.seed,
         "evidence": {

@@ -67,6 +67,25 @@ def draw(
     return drawn
 
 
+def directions(tolerances: Tolerances, drawn: Draws, seed: int) -> Floats:
+    """Directions in which both masks of each finger are shifted, as unit vectors, shape `(fingers,
+    2, 2)`: those of the shifts that were drawn, if these are as likely in any direction.
+
+    Args:
+        tolerances: their distributions.
+        drawn: deviations of the fingers.
+        seed: of other directions: a shift without a spread has none, and those of a uniform
+            distribution crowd at the diagonals.
+    """
+    shift_mm = drawn["mask_shift"].reshape(-1, 2, 2)
+    length_mm = np.linalg.norm(shift_mm, axis=2, keepdims=True)
+    if tolerances.mask_shift.distribution == "normal" and length_mm.all():
+        own: Floats = shift_mm / length_mm
+        return own
+    angle = generator(seed, Stream.DIRECTIONS).uniform(-np.pi, np.pi, (len(shift_mm), 2))
+    return np.stack([np.cos(angle), np.sin(angle)], axis=2)
+
+
 def built(layout: Layout, model: Model, draws: Draws, finger: int) -> Built:
     """One pair of fingers of those drawn.
 

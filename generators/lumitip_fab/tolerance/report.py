@@ -40,7 +40,8 @@ def print_tables(study: dict[str, Any], console: Console) -> None:
         title=f"{study['fingers']} built pairs of fingers, {study['poses']['edge']} edges and "
         f"{study['poses']['cable']} cables each, gap {study['gap_mm']:g} mm; "
         f"{study['evidence']}",
-        caption=f"Fingers are tried at {study['poses']['sets']} sets of poses in turn.",
+        caption=f"Fingers are tried at {study['poses']['sets']} sets of poses in turn; intervals "
+        "are as wide as differences between these make them.",
     )
     table.add_column("")
     for heading in ("good", "95 % interval", "gross errors", "edge mm, °", "cable mm, °"):

@@ -12,6 +12,7 @@ class Stream(IntEnum):
     POSES = 2
     NOISE = 3
     BOOTSTRAP = 4
+    DIRECTIONS = 5
 
 
 def generator(seed: int, stream: Stream, *numbers: int) -> np.random.Generator:

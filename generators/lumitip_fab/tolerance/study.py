@@ -20,9 +20,10 @@ from lumitip_fab.config.messages import shown_path
 from lumitip_fab.derive.making.tolerances import MODEL_VERSION, fingerprint, spreads
 from lumitip_fab.errors import BuildError, InputError, Problem
 from lumitip_fab.tolerance.bench import COLUMNS, POSE_SETS, Case, bench
-from lumitip_fab.tolerance.draws import FACTORS, Draws, draw
+from lumitip_fab.tolerance.draws import FACTORS, Draws, directions, draw
 from lumitip_fab.tolerance.options import GOOD_PERCENT, MASK_FINGERS, Goals, Options
 from lumitip_fab.tolerance.sobol import indices, mixed
+from lumitip_fab.tolerance.yields import Good, design_effect, good, interval, worst_of
 
 EVIDENCE = "simulated with our own model"
 _TARED = COLUMNS[1:2]
@@ -74,11 +75,14 @@ def study(
         sensitive = sensitivities(errors, take, draws, options.seed) if draws else {}
         names = sorted(sensitive, key=lambda name: -max(sensitive[name]["total"].values()))
         without = {
-            name: yield_of(errors({**drawn, name: 0.0 * drawn[name]}, _TARED)[0], options.goals)
+            name: float(
+                good(errors({**drawn, name: 0.0 * drawn[name]}, _TARED)[0], options.goals).mean()
+            )
             for name in names[:_BEST]
         }
         few = take(min(MASK_FINGERS, options.fingers), options.seed)
-        mask_mm, mask_share = mask_allowance(errors, few, options.goals)
+        ways = directions(table, few, options.seed)
+        mask_mm, mask_good = mask_allowance(errors, few, ways, options.goals)
     entries = {
         name: {
             "title": entry.title,
@@ -112,8 +116,7 @@ def study(
             "mm": mask_mm,
             "or_more": mask_mm == MOST_SHIFT_MM,
             "fingers": len(few["gap"]),
-            "yield": _rounded(mask_share),
-            "yield_95": [_rounded(end) for end in wilson(mask_share, len(few["gap"]))],
+            **_yield(mask_good),
         },
         "pose_estimator": bench(case).compared(take(_SEARCHED, options.seed)),
     }
@@ -146,31 +149,37 @@ def case_of(config: Input, layout: Layout, options: Options) -> Case:
     return case
 
 
-def mask_allowance(errors: Errors, drawn: Draws, goals: Goals) -> tuple[float | None, float]:
+def mask_allowance(
+    errors: Errors, drawn: Draws, ways: Floats, goals: Goals
+) -> tuple[float | None, Good]:
     """The largest shift of both masks, each in a random direction, up to which `GOOD_PERCENT` of
     the fingers drawn meet the goals after a tare, all their other deviations unchanged.
 
+    Args:
+        errors: of fingers.
+        drawn: their deviations.
+        ways: see `directions`.
+        goals: of a good finger.
+
     Returns:
         The shift, a multiple of `MASK_STEP_MM`; at `MOST_SHIFT_MM` the masks may be off by more.
-        None if too few fingers are good without any shift. And the yield with it.
+        None if too few fingers are good without any shift. And which fingers are good with it.
     """
-    found, good = None, 0.0
+    found, last = None, np.zeros(len(ways), bool)
     for steps in range(_MASK_STEPS + 1):
         shift_mm = round(steps * MASK_STEP_MM, 2)
-        share = shifted_yield(errors, drawn, goals, shift_mm)
-        if share < GOOD_PERCENT / 100.0:
-            return found, good if steps else share
-        found, good = shift_mm, share
-    return found, good
+        own = shifted_good(errors, drawn, ways, goals, shift_mm)
+        if own.mean() < GOOD_PERCENT / 100.0:
+            return found, last if steps else own
+        found, last = shift_mm, own
+    return found, last
 
 
-def shifted_yield(errors: Errors, drawn: Draws, goals: Goals, shift_mm: float) -> float:
-    """Share of the fingers that meet the goals after a tare if both masks are off by a length, each
-    in a random direction."""
-    way = drawn["mask_shift"].reshape(-1, 2, 2)
-    way = way / np.maximum(np.linalg.norm(way, axis=2, keepdims=True), 1e-9)
-    shifted = {**drawn, "mask_shift": (shift_mm * way).reshape(len(way), 4)}
-    return yield_of(errors(shifted, _TARED)[0], goals)
+def shifted_good(errors: Errors, drawn: Draws, ways: Floats, goals: Goals, shift_mm: float) -> Good:
+    """Which fingers meet the goals after a tare if both masks are off by a length, each in its
+    direction."""
+    shifted = {**drawn, "mask_shift": (shift_mm * ways).reshape(len(ways), 4)}
+    return good(errors(shifted, _TARED)[0], goals)
 
 
 def draws_of(fingers: int) -> int:
@@ -208,25 +217,10 @@ def sensitivities(
     }
 
 
-def worst_of(rows: Floats) -> Floats:
-    """Errors of position (mm) and angle (degrees), the worse of edges and cables, from those of
-    both kinds, shape `(fingers, 2)`."""
-    return np.maximum(rows[:, :2], rows[:, 2:4])
-
-
-def yield_of(rows: Floats, goals: Goals) -> float:
-    """Share of fingers whose errors (see `Bench.errors`) meet the goals and are not gross."""
-    position, angle = worst_of(rows).T
-    good = (position <= goals.position_mm) & (angle <= goals.angle_deg) & (rows[:, 4] == 0.0)
-    return float(np.mean(good))
-
-
 def _column(rows: Floats, goals: Goals) -> dict[str, Any]:
-    share = yield_of(rows, goals)
     names = ("edge_mm", "edge_deg", "cable_mm", "cable_deg")
     return {
-        "yield": _rounded(share),
-        "yield_95": [_rounded(end) for end in wilson(share, len(rows))],
+        **_yield(good(rows, goals)),
         "gross_errors": _rounded(float(rows[:, 4].mean())),
         **{
             name: {str(p): _rounded(value) for p, value in zip(_PERCENTILES, values, strict=True)}
@@ -237,12 +231,12 @@ def _column(rows: Floats, goals: Goals) -> dict[str, Any]:
     }
 
 
-def wilson(share: float, count: int) -> tuple[float, float]:
-    """Interval that has the true share with 95 % (Wilson)."""
-    z = 1.96
-    middle, scale = share + z * z / (2 * count), 1.0 + z * z / count
-    half = z * math.sqrt(share * (1.0 - share) / count + (z / (2 * count)) ** 2)
-    return max((middle - half) / scale, 0.0), min((middle + half) / scale, 1.0)
+def _yield(found: Good) -> dict[str, Any]:
+    return {
+        "yield": _rounded(float(found.mean())),
+        "yield_95": [_rounded(end) for end in interval(found)],
+        "design_effect": _rounded(design_effect(found)),
+    }
 
 
 @contextmanager
