@@ -8,7 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from lumitip.errors import LinkError
+from lumitip.calibration import Kind
+from lumitip.errors import LinkError, ViewError
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Frame
 from lumitip.layout import Layout
@@ -73,6 +74,8 @@ class Finger:
         self._began = time.monotonic()
         self._lock = threading.Lock()
         self._recorder = Recorder()
+        self._taring = False
+        self._references = threading.Lock()  # held while a tare or a recording starts
         self._changed: Callable[[], None] = lambda: None
         self._thread = threading.Thread(target=self._run, name="lumitip-view", daemon=True)
 
@@ -164,13 +167,39 @@ class Finger:
         self.detail = event.detail
         self._changed()
 
+    def tare(self, kind: Kind) -> None:
+        """Measure a reference, but not during a recording, which has the references of its start.
+
+        Raises:
+            LumitipError: as `Fingertip.tare`, or if a recording or another tare is running.
+        """
+        with self._references:
+            self._refuse_while_taring("tare again afterwards")
+            recording = self._recorder.status()
+            if recording and recording["on"]:
+                raise ViewError(
+                    f"{recording['file']} is being recorded with the references of its start. "
+                    "Stop it, then tare"
+                )
+            self._taring = True
+        try:
+            self.tip.tare(kind)
+        finally:
+            self._taring = False
+
     def record(self, path: Path) -> None:
         """Start a recording.
 
         Raises:
-            LumitipError: as `Recorder.start`.
+            LumitipError: as `Recorder.start`, or if a reference is being measured.
         """
-        self._recorder.start(path, self.tip)
+        with self._references:
+            self._refuse_while_taring("record afterwards")
+            self._recorder.start(path, self.tip)
+
+    def _refuse_while_taring(self, remedy: str) -> None:
+        if self._taring:
+            raise ViewError(f"{self.tip.device_id}: a reference is being measured; {remedy}")
 
     def stop_recording(self) -> Path | None:
         """End the recording; returns its file, `None` if there was none."""
@@ -195,6 +224,7 @@ class Finger:
             "drift": None if drift is None else str(drift),
             "calibrated": self.tip.calibration.correction() is not None,
             "estimates": {"state": self.estimates.state, "detail": self.estimates.detail},
+            "taring": self._taring,
             "recording": self._recorder.status(),
             "scene": self.tip.simulated.placement() if self.tip.simulated else None,
             "player": self.player.status() if self.player else None,

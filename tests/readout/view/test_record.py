@@ -2,6 +2,7 @@
 
 import os
 import re
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -16,6 +17,7 @@ from live_page import opened, until
 from lumitip import Layout, LumitipError
 from lumitip.calibration import Calibration
 from lumitip.cli import main
+from lumitip.errors import ViewError
 from lumitip.fingertip import Fingertip
 from lumitip.recording import Reader, RecordingError, Writer, summarise
 from lumitip.view.finger import Finger
@@ -77,6 +79,32 @@ def test_references_do_not_change_while_they_are_recorded(serve: Serve, page: Pa
     page.locator(".tare").click()
     expect(page.locator("#notice")).to_contain_text("twin-edge-001.mcap is being recorded")
     assert server.registry.fingers[1].tip.calibration.empty is None
+
+
+def test_no_recording_starts_while_a_reference_is_measured(
+    serve: Serve, page: Page, wait_for: WaitFor, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    measured = threading.Event()
+    monkeypatch.setattr(Fingertip, "tare", lambda *_: measured.wait(60.0))
+    server = serve("twin://edge?rate=200")
+    finger = server.registry.fingers[1]
+    opened(page, server)
+    page.keyboard.press("t")
+    expect(page.locator(".record")).to_be_disabled()
+    wait_for(lambda: finger.status()["taring"])
+    page.keyboard.press("r")
+    with pytest.raises(ViewError, match="a reference is being measured; record afterwards"):
+        finger.record(tmp_path / "run.mcap")
+    with pytest.raises(ViewError, match="a reference is being measured; tare again afterwards"):
+        finger.tare("empty")
+    page.reload()  # as another browser
+    expect(page.locator(".tare")).to_be_disabled()
+    expect(page.locator(".record")).to_be_disabled()
+    measured.set()
+    expect(page.locator(".record")).to_be_enabled()
+    assert server.registry.recordings() == []
+    page.keyboard.press("r")
+    expect(page.locator(".record")).to_have_attribute("aria-pressed", "true")
 
 
 def test_a_damaged_recording_says_so(serve: Serve, page: Page, recording: Path) -> None:

@@ -40,6 +40,7 @@ export class Panel {
     this.find("h2").textContent = layout.device;
     this.find(".url").textContent = layout.url === layout.device ? "" : layout.url;
     this.find(".url").title = `${layout.url}, design ${layout.design}`;
+    this.taring = false;
     this.find(".tare").onclick = () => this.tare();
     this.find(".record").onclick = () => this.record();
     if (layout.replayed) this.player = new Player(this);
@@ -164,6 +165,7 @@ export class Panel {
     fill(this.find(".link"), linkReadings(status, this.pictures));
     set(this.find(".losses"), status.losses.text);
     this.find(".losses").classList.toggle("bad", status.losses.fresh);
+    this.allow();
     this.recorded(status.recording);
     this.player?.update(status.player);
     this.scene?.update(status.scene);
@@ -193,16 +195,23 @@ export class Panel {
   }
 
   async tare() {
-    const button = this.find(".tare");
-    if (button.disabled || this.player) return;
-    button.disabled = true;
+    if (this.find(".tare").disabled || this.player) return;
+    this.taring = true;
+    this.allow();
     this.say(`${this.layout.device}: measuring the empty grasp, hold still`);
     await this.ask("tare", { kind: "empty" });
-    button.disabled = false;
+    this.taring = false;
+    this.allow();
+  }
+
+  /** No button while this page or another one measures a reference. */
+  allow() {
+    const taring = this.taring || Boolean(this.status?.taring);
+    for (const button of [".tare", ".record"]) this.find(button).disabled = taring;
   }
 
   record() {
-    if (this.player) return null;
+    if (this.find(".record").disabled || this.player) return null;
     return this.ask("record", { on: !this.status?.recording?.on });
   }
 
