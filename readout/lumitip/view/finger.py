@@ -65,6 +65,8 @@ class Finger:
         self.state = "connected"
         self.detail = ""
         self.estimates = Estimates(tip.layout, expected)
+        self.warning = ""
+        """A fault that does not end the reading."""
         self._failed = False
         self._sinks = sinks
         self._processor = Processor(tip.layout)
@@ -217,6 +219,7 @@ class Finger:
         return {
             "state": self.state,
             "detail": self.detail,
+            "warning": self.warning,
             "read": self.count,
             "silent_s": self._silent_s(),
             **vars(stats),
@@ -243,14 +246,15 @@ class Finger:
             self.state = "ended"
         except LinkError as error:
             self._fail(str(error))
-        except BaseException as error:  # noqa: BLE001 - panics of Rerun are no Exception
-            _log.error("reading of %s has stopped", self.url, exc_info=error)
+        except Exception as error:
+            _log.exception("reading of %s has stopped", self.url)
             self._fail(f"{type(error).__name__}: {error}")
         self._changed()
 
     def _fail(self, why: str) -> None:
         self._failed = True
         self.state, self.detail = "failed", why
+        self._recorder.fail(why)
 
     def _take(self, frame: Frame) -> None:
         with self._lock:
@@ -260,8 +264,18 @@ class Finger:
             self._frames.append((frame, time.monotonic()))
         self._recorder.write(frame)
         for sink in self._sinks:
-            sink.take(self, frame)
+            try:
+                sink.take(self, frame)
+            except BaseException as error:  # noqa: BLE001 - panics of Rerun are no Exception
+                self._drop(sink, error)
         self._changed()
+
+    def _drop(self, failed: Sink, error: BaseException) -> None:
+        """Send no more frames to a sink that has failed; reading and recording go on."""
+        self._sinks = tuple(sink for sink in self._sinks if sink is not failed)
+        name = type(failed).__name__
+        self.warning = f"{name} has failed and gets no more frames: {type(error).__name__}: {error}"
+        _log.error("%s: %s", self.url, self.warning, exc_info=error)
 
 
 class _Later:

@@ -55,6 +55,19 @@ class Recorder:
                 _log.warning("%s: %s", self._path, self._error)
                 self._writer = None
 
+    def fail(self, why: str) -> None:
+        """End a recording whose frames have ended by an error."""
+        with self._lock:
+            if not self._writer:
+                return
+            writer, self._writer = self._writer, None
+            self._error = f"the recording ended: {why}"
+            _log.warning("%s: %s", self._path, self._error)
+            try:
+                writer.close()
+            except (OSError, LumitipError) as error:
+                self._error += f"; then: {error}"
+
     def stop(self) -> Path | None:
         """End the recording; returns its file, `None` if there was none."""
         with self._lock:

@@ -15,9 +15,9 @@ const EVERY_MS = { drawPlot: 40, drawTrends: 100, writeNumbers: 100, writeWords:
 const SILENT_S = 1; // without a frame the display is marked as old
 
 /** Text beside the name: the most urgent message. */
-function detailOf({ state, detail, silent_s, drift, player }, silent) {
+function detailOf({ state, detail, warning, silent_s, drift, player }, silent) {
   if (state !== "connected") return detail;
-  if (player?.damage) return player.damage;
+  if (warning || player?.damage) return warning || player.damage;
   return silent ? `no frame for ${silent_s.toFixed(0)} s` : drift || "";
 }
 
@@ -157,6 +157,7 @@ export class Panel {
     const detail = detailOf(status, silent);
     this.find(".detail").textContent = detail;
     this.find(".detail").title = detail;
+    this.find(".detail").classList.toggle("bad", Boolean(status.warning));
     this.element.classList.toggle("stale", silent || status.state !== "connected");
     this.find(".dot").className = `dot ${status.state}`;
     this.find(".dot").title = status.state;
