@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from mcap.writer import Writer as McapWriter
 from playwright.sync_api import Page, expect
 
 from live_page import opened, until
@@ -113,6 +114,39 @@ def test_a_damaged_recording_says_so(serve: Serve, page: Page, recording: Path) 
     recording.write_bytes(data)
     opened(page, serve(f"replay://{recording}?speed=16"))
     expect(page.locator(".detail")).to_contain_text("damaged: bytes ")
+
+
+def test_a_recording_that_dies_is_said_once_and_can_be_read(
+    serve: Serve, page: Page, wait_for: WaitFor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    server = serve("twin://demo?rate=200")
+    opened(page, server)
+    page.keyboard.press("r")
+    expect(page.locator(".recorded")).to_contain_text("recording twin-demo-001.mcap")
+    full = OSError(28, "No space left on device")
+
+    def fails(*_: object) -> None:
+        raise full
+
+    monkeypatch.setattr(McapWriter, "add_message", fails)
+    notice, box = page.locator("#notice"), page.locator(".recorded")
+    path = server.registry.folder / "twin-demo-001.mcap"
+    error = f"the recording ended: {path}: cannot be written: {full}"
+    expect(notice).to_have_text(f"twin:demo: {error}")
+    expect(notice).to_have_class("error")
+    expect(box).to_have_class("recorded bad")
+    expect(box).to_contain_text(error)
+    for shown in (notice, box):
+        assert shown.evaluate("e => e.scrollHeight <= e.clientHeight")
+        assert shown.evaluate("e => e.scrollWidth <= e.clientWidth")
+    expect(page.locator(".record")).to_have_attribute("aria-pressed", "false")
+    notice.click()
+    expect(notice).to_have_text("")
+    page.wait_for_timeout(1500)  # some statuses later
+    expect(notice).to_have_text("")
+    server.registry.fingers[1].warning = "RerunSink has failed"
+    expect(page.locator(".detail")).to_have_text("RerunSink has failed")
+    expect(page.locator(".detail")).to_have_class("detail bad")
 
 
 def test_recording_ends_with_the_server(

@@ -41,6 +41,7 @@ export class Panel {
     this.find(".url").textContent = layout.url === layout.device ? "" : layout.url;
     this.find(".url").title = `${layout.url}, design ${layout.design}`;
     this.taring = false;
+    this.failed = ""; // the last error of a recording
     this.find(".tare").onclick = () => this.tare();
     this.find(".record").onclick = () => this.record();
     if (layout.replayed) this.player = new Player(this);
@@ -176,10 +177,15 @@ export class Panel {
   recorded(recording) {
     const [text, link] = [this.find(".recorded span"), this.find(".recorded a")];
     const done = Boolean(recording && !recording.on);
+    const error = recording?.error;
+    const failed = error ? `${recording.file}: ${error}` : "";
     link.hidden = !done;
+    this.find(".recorded").classList.toggle("bad", Boolean(failed));
+    if (failed && failed !== this.failed) this.say(`${this.layout.device}: ${error}`, true);
+    this.failed = failed;
     if (!recording) return;
     const frames = `${COUNT(recording.frames)} frames`;
-    set(text, recording.error || (done ? frames : `recording ${recording.file}: ${frames}`));
+    set(text, error || (done ? frames : `recording ${recording.file}: ${frames}`));
     if (!done) return;
     set(link, recording.file);
     link.href = fileOf(recording.file);
