@@ -292,8 +292,17 @@ def test_tare_from_the_page_is_kept_and_refused_when_something_moves(
     opened(page, server)
     page.keyboard.press("2")
     page.keyboard.press("t")
-    expect(page.locator("#notice")).to_contain_text("Hold the fingers still")
-    expect(page.locator("#notice")).to_have_class("error")
+    notice = page.locator("#notice")
+    expect(notice).to_contain_text("Hold the fingers still and open, away from flickering light")
+    expect(notice).to_have_class("error")
+    page.wait_for_timeout(7000)  # a notice that is no error has gone by then
+    for width in (1280, 700, 390):
+        page.set_viewport_size({"width": width, "height": 800})
+        expect(notice).to_contain_text("away from flickering light")
+        assert notice.evaluate("e => e.scrollWidth <= e.clientWidth"), width
+        assert notice.evaluate("e => e.scrollHeight <= e.clientHeight"), width
+    notice.click()
+    expect(notice).to_have_text("")
     assert server.registry.fingers[2].tip.calibration.empty is None
 
     assert min(page.evaluate("[...lumitip.panels.get(1).newest.values]")) == 255 - 40

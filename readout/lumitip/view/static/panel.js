@@ -41,6 +41,7 @@ export class Panel {
     this.find(".url").textContent = layout.url === layout.device ? "" : layout.url;
     this.find(".url").title = `${layout.url}, design ${layout.design}`;
     this.taring = false;
+    this.refused = ""; // the last action, if it was refused
     this.failed = ""; // the last error of a recording
     this.find(".tare").onclick = () => this.tare();
     this.find(".record").onclick = () => this.record();
@@ -195,9 +196,12 @@ export class Panel {
   async ask(action, body = {}) {
     try {
       const { said } = await post(`api/fingers/${this.layout.number}/${action}`, body);
-      if (said) this.say(said);
+      // What was refused before and is now done needs no error any more.
+      if (said || this.refused === action) this.say(said ?? "");
+      this.refused = "";
     } catch (error) {
       this.say(error.message, true);
+      this.refused = action;
     }
   }
 
