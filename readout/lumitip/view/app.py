@@ -134,7 +134,10 @@ async def _record(
 ) -> dict[str, Any]:
     """`{"on": true | false}`"""
     _, finger = _finger(registry, request)
-    if body.get("on") is True:
+    on = body.get("on")
+    if type(on) is not bool:
+        raise ViewError(f"on is {on!r:.40}; true or false is needed")
+    if on:
         _needs_device(finger)
         path = await anyio.to_thread.run_sync(registry.fresh, finger)
         await anyio.to_thread.run_sync(finger.record, path)
@@ -145,6 +148,8 @@ async def _record(
 
 async def _close(registry: FingerRegistry, _: dict[str, Any], request: Request) -> dict[str, Any]:
     number, finger = _finger(registry, request)
+    if finger.player is None:
+        raise ViewError(f"{finger.tip.device_id} is live; only a replay can be closed from here")
     await anyio.to_thread.run_sync(registry.remove, number)
     return {"said": f"{finger.tip.device_id} closed"}
 
