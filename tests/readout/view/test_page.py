@@ -167,6 +167,28 @@ def test_freeze_holds_the_picture_and_goes_on(serve: Serve, page: Page, wait_for
     wait_for(lambda: page.evaluate(frames) > count + 50)
     assert page.evaluate(shown) > held
     assert page.evaluate(drawn) == held
+    # What redraws the page draws the same moment again.
+    canvases = "[...document.querySelectorAll('.finger canvas')].map((c) => c.toDataURL())"
+    words = "document.querySelector('aside').innerText.split('Link')[0]"
+    redraw = "dispatchEvent(new Event('themed'))"
+    page.evaluate(redraw)
+    frozen, said = page.evaluate(canvases), page.evaluate(words)
+    before = page.evaluate(frames)
+    wait_for(lambda: page.evaluate(frames) > before + 50)
+    for keys in ("vv", "oo", "www", "c"):
+        for key in keys:
+            page.keyboard.press(key)
+            assert page.evaluate(drawn) == held
+        assert page.evaluate(canvases) == frozen, keys
+    page.set_viewport_size({"width": 1200, "height": 760})
+    page.wait_for_timeout(300)
+    page.locator(".grid").click(position={"x": 200, "y": 200})
+    assert page.evaluate(drawn) == held
+    page.set_viewport_size({"width": 1280, "height": 800})
+    page.keyboard.press("c")
+    page.wait_for_timeout(300)
+    assert page.evaluate(canvases) == frozen
+    assert page.evaluate(words) == said
     page.keyboard.press("Space")
     wait_for(lambda: page.evaluate(drawn) > held + 50)
 

@@ -51,6 +51,7 @@ async function list() {
       const { frames, estimate } = newest;
       if (frames.has(layout.number)) panel.take(frames.get(layout.number));
       if (estimate.has(layout.number)) panel.estimated(estimate.get(layout.number));
+      if (show.frozen) panel.freeze(true);
     }
     choose(panels.has(chosen) ? chosen : fingers[0]?.number);
   } catch (error) {
@@ -106,6 +107,7 @@ function redraw() {
 function freeze() {
   show.frozen = !show.frozen;
   byId("freeze").setAttribute("aria-pressed", show.frozen);
+  for (const panel of panels.values()) panel.freeze(show.frozen);
   if (!show.frozen) redraw();
 }
 

@@ -41,6 +41,7 @@ export class Panel {
     this.find(".url").textContent = layout.url === layout.device ? "" : layout.url;
     this.find(".url").title = `${layout.url}, design ${layout.design}`;
     this.taring = false;
+    this.held = null; // what is drawn while the display is frozen
     this.refused = ""; // the last action, if it was refused
     this.failed = ""; // the last error of a recording
     this.find(".tare").onclick = () => this.tare();
@@ -61,15 +62,27 @@ export class Panel {
     this.show = show;
     this.grid = new Grid(this.find(".grid"), this.layout);
     this.history = new History(this.layout.x_mm.length);
-    this.plot = new Plot(this.find(".plot"), this.history);
-    this.trends = ["offset", "angle"].map(
-      (name) => new Trend(this.find(`canvas.${name}`), name, this.estimates, this.published),
-    );
+    this.plot = new Plot(this.find(".plot"));
+    this.trends = ["offset", "angle"].map((name) => new Trend(this.find(`canvas.${name}`), name));
     this.legend();
     new ResizeObserver(() => {
       this.grid.place();
       this.draw(true);
     }).observe(this.find(".grid"));
+  }
+
+  /** Draw the moment of this call until further notice, or again the newest. */
+  freeze(whether) {
+    const { newest, estimate, status, history, estimates, published } = this;
+    this.held = whether ? {
+      newest, estimate, status,
+      history: history.copy(), estimates: estimates.copy(), published: published.copy(),
+    } : null;
+  }
+
+  /** All that is drawn. */
+  get drawn() {
+    return this.held ?? this;
   }
 
   /** Store frames for the next redraw. */
@@ -101,12 +114,13 @@ export class Panel {
 
   /** Draw new frames, or everything; what changes too fast to be read is drawn when it is due. */
   draw(all = false) {
-    if (!this.newest) return;
+    const { newest, estimate } = this.drawn;
+    if (!newest) return;
     const now = performance.now();
     if (this.fresh || all) {
       this.fresh = false;
-      this.grid.draw(this.newest.values, this.newest.contact, this.estimate, this.show);
-      this.element.dataset.seq = this.newest.seq;
+      this.grid.draw(newest.values, newest.contact, estimate, this.show);
+      this.element.dataset.seq = newest.seq;
       this.late = new Set(Object.keys(EVERY_MS));
       this.count(now);
     }
@@ -119,24 +133,26 @@ export class Panel {
   }
 
   drawPlot() {
-    this.plot.draw(this.grid.selected, this.show.span);
+    this.plot.draw(this.drawn.history, this.grid.selected, this.show.span);
   }
 
   drawTrends() {
-    for (const trend of this.trends) trend.draw(this.history.last, this.show.span);
+    for (const trend of this.trends) trend.draw(this.drawn, this.show.span);
   }
 
   /** The numbers beside the cells. */
   writeNumbers() {
-    const { contact } = this.newest;
+    const { newest: { contact }, estimate } = this.drawn;
     set(this.find(".shape"), contact.shape);
     fill(this.find(".contact"), contactReadings(contact));
-    set(this.find(".kind"), this.estimate?.kind ?? "–");
-    fill(this.find(".estimate"), estimateReadings(this.estimate));
+    this.find(".grid").setAttribute("aria-label", `cells, shape ${contact.shape}`);
+    set(this.find(".kind"), estimate?.kind ?? "–");
+    fill(this.find(".estimate"), estimateReadings(estimate));
   }
 
   writeWords() {
-    if (this.status) set(this.find(".words"), estimateWords(this.estimate, this.status));
+    const { estimate, status } = this.drawn;
+    if (status) set(this.find(".words"), estimateWords(estimate, status));
   }
 
   count(now) {
@@ -164,7 +180,6 @@ export class Panel {
     this.find(".dot").className = `dot ${status.state}`;
     this.find(".dot").title = status.state;
     this.find(".record").setAttribute("aria-pressed", on);
-    this.find(".grid").setAttribute("aria-label", `cells, shape ${this.newest?.contact.shape}`);
     fill(this.find(".link"), linkReadings(status, this.pictures));
     set(this.find(".losses"), status.losses.text);
     this.find(".losses").classList.toggle("bad", status.losses.fresh);
