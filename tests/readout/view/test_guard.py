@@ -113,6 +113,9 @@ def test_another_address_needs_the_token(serve: Serve) -> None:
     assert "SameSite=strict" in cookie
     shown = cookie.partition(";")[0]
     assert ask(server, "GET", "/", cookie=shown).status == 200
+    # Cookies are shared by all ports of a host; those of other programs lock nobody out.
+    for foreign in ('prefs={"theme":"dark"}', "a b=1", "=;;", "x=[1, 2]", 'q="'):
+        assert ask(server, "GET", "/", cookie=f"{foreign}; {shown}; {foreign}").status == 200
     assert stream_status(server, origin=origin, Cookie=shown) == 101
     assert stream_status(server, origin="http://example.org", Cookie=shown) == 403
     assert ask(server, "GET", "/", cookie=shown.replace("=", "=x")).status == 401
