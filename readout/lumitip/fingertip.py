@@ -243,7 +243,7 @@ class Fingertip:
         """The references in use; a new one applies to the next frames.
 
         Raises:
-            CalibrationMismatch: on setting the calibration of another device or design.
+            CalibrationError: on setting one without light, or of another device or design.
         """
         return self._references.calibration
 

@@ -54,6 +54,19 @@ def test_what_is_no_empty_grasp_is_refused_with_the_cells() -> None:
         _measured(60.0).measured("dark", np.full((5, 4), 50.0, np.float32))
 
 
+def test_a_calibration_that_is_refused_is_not_in_use(open_feed) -> None:
+    tip, feed = open_feed()
+    feed.packet(0)
+    design, cells = tip.layout.design_hash, len(tip.layout)
+    empty = np.full(cells, 200.0, np.float32)
+    good = tip.calibration = Calibration("feed", design, empty)
+    with pytest.raises(CalibrationError, match="not lighter"):
+        tip.calibration = Calibration("feed", design, empty, empty)
+    assert tip.calibration is good
+    feed.packet(1, value=155)
+    assert tip.latest().values == pytest.approx(np.full(cells, 127.5))
+
+
 def test_long_lists_of_cells_are_cut_so_that_the_remedy_is_read() -> None:
     none = Calibration("dev", HASH)
     for moving, said in (
