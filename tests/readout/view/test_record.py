@@ -149,6 +149,44 @@ def test_a_recording_that_dies_is_said_once_and_can_be_read(
     expect(page.locator(".detail")).to_have_class("detail bad")
 
 
+@pytest.mark.parametrize("slow", ["add_message", "finish", "start"])
+def test_a_slow_disk_does_not_hold_up_the_status(
+    slow: str, wait_for: WaitFor, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    waits, goes_on = threading.Event(), threading.Event()
+    real = getattr(McapWriter, slow)
+
+    def slowly(*arguments: Any, **more: Any) -> Any:
+        waits.set()
+        assert goes_on.wait(30.0)
+        return real(*arguments, **more)
+
+    finger = Finger.open("twin://demo?rate=200")
+    if slow != "start":
+        finger.record(tmp_path / "run.mcap")
+    finger.start(lambda: None)
+    monkeypatch.setattr(McapWriter, slow, slowly)
+    steps = {"finish": finger.stop_recording, "start": lambda: finger.record(tmp_path / "run.mcap")}
+    step = threading.Thread(target=steps.get(slow, lambda: None))
+    step.start()
+    assert waits.wait(30.0)
+    found: list[dict[str, Any]] = []
+    asking = threading.Thread(target=lambda: found.append(finger.status()), daemon=True)
+    asking.start()
+    asking.join(5.0)
+    try:
+        assert len(found) == 1, "it waits for the disk"
+        recording = found[0]["recording"]
+        assert (slow == "start") if recording is None else recording["on"]
+        assert finger.is_recording_to("run.mcap") == (slow != "start")
+    finally:
+        goes_on.set()
+    step.join(30.0)
+    finger.close()
+    assert summarise(tmp_path / "run.mcap").damage == ()
+    assert not finger.is_recording_to("run.mcap")
+
+
 def test_recording_ends_with_the_server(
     serve: Serve, page: Page, wait_for: WaitFor, tmp_path: Path
 ) -> None:
