@@ -127,7 +127,8 @@ class FingertipGroup:
 
     def wait_latest(self, timeout_s: float | None = 1.0) -> Moment:
         """The newest frame of each fingertip, once each is newer than the last that this thread
-        got; waits up to `timeout_s` (s), `None` without limit. For control loops: nothing queues.
+        got; waits up to `timeout_s` (s), `None` without limit. The first frames of a thread are as
+        of `Fingertip.wait_latest`. For control loops: nothing queues.
 
         Raises:
             LinkTimeout: if a fingertip sent no newer frame in time; the message names it.
