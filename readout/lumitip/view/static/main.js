@@ -108,7 +108,7 @@ function freeze() {
   show.frozen = !show.frozen;
   byId("freeze").setAttribute("aria-pressed", show.frozen);
   for (const panel of panels.values()) panel.freeze(show.frozen);
-  if (!show.frozen) redraw();
+  redraw(); // when it freezes, all parts of the page come to the same moment
 }
 
 /** Toggle values or overlay. */
