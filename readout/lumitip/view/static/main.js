@@ -45,7 +45,9 @@ async function list() {
       const panel = new Panel(layout, say);
       panels.set(layout.number, panel);
       byId("fingers").append(panel.element);
-      panel.element.addEventListener("pointerdown", () => choose(layout.number));
+      for (const event of ["pointerdown", "focusin"]) {
+        panel.element.addEventListener(event, () => choose(layout.number));
+      }
       panel.placed(show);
       // Of an ended replay there is one message only, which may come before the list of fingers.
       const { frames, estimate } = newest;

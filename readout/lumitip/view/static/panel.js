@@ -178,7 +178,7 @@ export class Panel {
     this.find(".detail").classList.toggle("bad", Boolean(status.warning));
     this.element.classList.toggle("stale", silent || status.state !== "connected");
     this.find(".dot").className = `dot ${status.state}`;
-    this.find(".dot").title = status.state;
+    set(this.find(".state"), silent && status.state === "connected" ? "silent" : status.state);
     this.find(".record").setAttribute("aria-pressed", on);
     fill(this.find(".link"), linkReadings(status, this.pictures));
     set(this.find(".losses"), status.losses.text);
