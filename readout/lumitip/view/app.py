@@ -190,9 +190,6 @@ def _number(body: dict[str, Any], name: str) -> float | None:
 
 async def _replay(registry: FingerRegistry, body: dict[str, Any], _: Request) -> dict[str, Any]:
     """`{"name": "run.mcap"}`, a recording in the folder"""
-    from lumitip.view.player import Player
-
-    path = registry.recording(str(body.get("name")))
-    player = await anyio.to_thread.run_sync(Player, path)
-    finger = await anyio.to_thread.run_sync(Finger.play, path.name, player, (), registry.expected)
-    return {"said": f"replaying {path.name}", "number": registry.add(finger)}
+    name = str(body.get("name"))
+    number = await anyio.to_thread.run_sync(registry.replay, name)
+    return {"said": f"replaying {name}", "number": number}

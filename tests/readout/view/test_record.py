@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import threading
 import time
 from collections.abc import Callable
@@ -23,7 +24,7 @@ from lumitip.fingertip import Fingertip
 from lumitip.recording import Reader, RecordingError, Writer, summarise
 from lumitip.view.finger import Finger
 from lumitip.view.player import Player
-from lumitip.view.registry import FingerRegistry
+from lumitip.view.registry import MOST_REPLAYS, FingerRegistry
 from lumitip.view.server import ViewServer
 
 pytestmark = pytest.mark.slow
@@ -226,6 +227,50 @@ def test_replay_from_the_page_pauses_winds_and_closes(
     wait_for(lambda: page.evaluate(PLAYER.format(2))["position_s"] > 2.9)
     replay.locator(".close").click()
     expect(page.locator(".finger")).to_have_count(1, timeout=30_000)
+
+
+def test_replays_of_a_file_are_one_and_replays_of_all_are_few(
+    recording: Path, wait_for: WaitFor
+) -> None:
+    folder = recording.parent
+    for n in range(1, MOST_REPLAYS + 1):
+        shutil.copy(recording, folder / f"copy-{n}.mcap")
+    registry = FingerRegistry([Finger.open("twin://edge")], folder)
+    try:
+        number = registry.replay("run.mcap")
+        player = registry.fingers[number].player
+        player.control(playing=False)
+        assert registry.replay("run.mcap") == number
+        assert player.status()["playing"], "it goes on"
+        recording.write_bytes((folder / "copy-1.mcap").read_bytes())
+        os.utime(recording, ns=(0, 0))
+        changed = registry.replay("run.mcap")
+        assert changed != number, "another recording of the same name"
+        for n in range(1, MOST_REPLAYS - 1):
+            registry.replay(f"copy-{n}.mcap")
+        with pytest.raises(ViewError, match="8 replays are open; 8 are allowed. Close one, then"):
+            registry.replay(f"copy-{MOST_REPLAYS}.mcap")
+        assert registry.replay("run.mcap") == changed
+        registry.remove(number)
+        registry.replay(f"copy-{MOST_REPLAYS}.mcap")
+        assert len(registry.fingers) == 1 + MOST_REPLAYS
+    finally:
+        registry.close()
+
+
+def test_a_replay_that_is_asked_for_twice_is_one_finger(
+    serve: Serve, page: Page, recording: Path
+) -> None:
+    opened(page, serve("twin://edge"))
+    for _ in range(2):
+        page.keyboard.press("p")
+        page.get_by_role("button", name=recording.name).click()
+        expect(page.locator("#notice")).to_have_text(f"replaying {recording.name}")
+        expect(page.locator(".finger")).to_have_count(2)
+        expect(page.locator(".finger").nth(1)).to_have_class(re.compile("chosen"))
+        page.keyboard.press("1")
+    page.wait_for_timeout(500)
+    expect(page.locator(".finger")).to_have_count(2)
 
 
 def test_a_page_that_is_loaded_after_the_end_shows_the_last_frame(
