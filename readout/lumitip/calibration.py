@@ -84,7 +84,8 @@ class Calibration:
         empty = self.empty if self.empty is not None else np.full_like(reference, 255)
         if (blind := np.flatnonzero(empty <= dark)).size:
             raise CalibrationError(
-                f"{_cells(blind, dark.size)}: not lighter with an empty grasp than in the dark. Tare again"
+                f"{_cells(blind, dark.size)}: not lighter with an empty grasp than in the dark. "
+                "Tare again"
             )
         return Correction(dark, np.float32(255) / (empty - dark))
 
@@ -102,13 +103,13 @@ class Calibration:
         moving = np.flatnonzero(light.std(axis=0) > _MOST_NOISE)
         if moving.size:
             raise CalibrationError(
-                f"{_cells(moving, mean.size)}: the noise is above {_MOST_NOISE:g} of 255. Hold the fingers "
-                "still and open, away from flickering light"
+                f"{_cells(moving, mean.size)}: the noise is above {_MOST_NOISE:g} of 255. Hold the "
+                "fingers still and open, away from flickering light"
             )
         if kind == "dark" and (bright := np.flatnonzero(mean > _MOST_DARK)).size:
             raise CalibrationError(
-                f"{_cells(bright, mean.size)}: the light is above {_MOST_DARK:g} of 255. Cover the whole "
-                "fingertip, or switch the emitter off"
+                f"{_cells(bright, mean.size)}: the light is above {_MOST_DARK:g} of 255. Cover the "
+                "whole fingertip, or switch the emitter off"
             )
         calibration = replace(self, empty=mean) if kind == "empty" else replace(self, dark=mean)
         dark = calibration.dark if calibration.dark is not None else np.zeros_like(mean)

@@ -246,7 +246,7 @@ class Finger:
             self.state = "ended"
         except LinkError as error:
             self._fail(str(error))
-        except Exception as error:
+        except Exception as error:  # noqa: BLE001 - the thread ends; the page says why
             _log.exception("reading of %s has stopped", self.url)
             self._fail(f"{type(error).__name__}: {error}")
         self._changed()
