@@ -11,7 +11,6 @@ import json
 import os
 import re
 import sys
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal, get_args
@@ -27,6 +26,7 @@ _LEAST_SPAN = 25.5  # a tenth of full light: the gain stays below 10
 _LEAST_SHARE = 0.4  # of the median cell: the spread of parts is smaller, an object's effect larger
 _MOST_DARK = 76.5  # three tenths of full light
 _MOST_NOISE = 8.0  # counts of 255; above it something moves
+_MOST_LISTED = 6
 _FORMAT = 1
 
 Kind = Literal["empty", "dark"]
@@ -84,7 +84,8 @@ class Calibration:
         empty = self.empty if self.empty is not None else np.full_like(reference, 255)
         if (blind := np.flatnonzero(empty <= dark)).size:
             raise CalibrationError(
-                f"{_cells(blind)}: not lighter with an empty grasp than in the dark. Tare again"
+                f"{_cells(blind, dark.size)}: not lighter with an empty grasp than in the dark. "
+                "Tare again"
             )
         return Correction(dark, np.float32(255) / (empty - dark))
 
@@ -102,13 +103,13 @@ class Calibration:
         moving = np.flatnonzero(light.std(axis=0) > _MOST_NOISE)
         if moving.size:
             raise CalibrationError(
-                f"{_cells(moving)}: the noise is above {_MOST_NOISE:g} of 255. Hold the fingers "
-                "still and open, away from flickering light"
+                f"{_cells(moving, mean.size)}: the noise is above {_MOST_NOISE:g} of 255. Hold the "
+                "fingers still and open, away from flickering light"
             )
         if kind == "dark" and (bright := np.flatnonzero(mean > _MOST_DARK)).size:
             raise CalibrationError(
-                f"{_cells(bright)}: the light is above {_MOST_DARK:g} of 255. Cover the whole "
-                "fingertip, or switch the emitter off"
+                f"{_cells(bright, mean.size)}: the light is above {_MOST_DARK:g} of 255. Cover the "
+                "whole fingertip, or switch the emitter off"
             )
         calibration = replace(self, empty=mean) if kind == "empty" else replace(self, dark=mean)
         dark = calibration.dark if calibration.dark is not None else np.zeros_like(mean)
@@ -117,8 +118,8 @@ class Calibration:
             least = max(_LEAST_SPAN, _LEAST_SHARE * float(np.median(span)))
             if (poor := np.flatnonzero(span < least)).size:
                 raise CalibrationError(
-                    f"{_cells(poor)}: the empty grasp is less than {least:.0f} of 255 lighter than "
-                    "the dark. Is the grasp empty? `lumitip doctor` tests each cell"
+                    f"{_cells(poor, mean.size)}: the empty grasp is less than {least:.0f} of 255 "
+                    "lighter than the dark. Is the grasp empty? `lumitip doctor` tests each cell"
                 )
         return calibration
 
@@ -269,9 +270,13 @@ def _path(device_id: str, design_hash: str, folder: Path | None) -> Path:
     return (folder or user_folder() / "calibration") / file_name(device_id, design_hash)
 
 
-def _cells(which: Sequence[int] | np.ndarray[tuple[int], np.dtype[np.int64]]) -> str:
-    cells = [int(i) for i in which]
-    return f"cell{'s' if len(cells) > 1 else ''} {', '.join(map(str, cells))}"
+def _cells(which: np.ndarray[tuple[int], np.dtype[np.int64]], cells: int) -> str:
+    """Some of all cells, in a few words: what to do comes after them."""
+    if which.size == cells > 1:
+        return f"all {cells} cells"
+    if which.size <= _MOST_LISTED:
+        return f"cell{'s' if which.size > 1 else ''} {', '.join(map(str, which))}"
+    return f"cells {', '.join(map(str, which[:3]))} and {which.size - 3} others"
 
 
 def _listed(values: Values | None) -> list[float] | None:

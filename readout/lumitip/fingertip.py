@@ -115,8 +115,8 @@ class Fingertip:
 
     def wait_latest(self, timeout_s: float | None = 1.0) -> Frame:
         """The newest frame, once it is newer than the last that this thread got from `read`,
-        `latest` or `wait_latest`; waits up to `timeout_s` (s), `None` without limit.
-
+        `latest` or `wait_latest`; waits up to `timeout_s` (s), `None` without limit. A thread that
+        got none yet takes none older than `timeout_s`, and none from before while the link is cut.
         For control loops: nothing queues, a slow loop skips frames and never gets an old one
         behind them. Several threads may call it; each gets the newest.
 
@@ -125,6 +125,7 @@ class Fingertip:
             LinkError: why no more will come.
         """
         last = getattr(self._handed_out, "frame", None)
+        self._handed_out.frame = last = last or self._hub.outdated(timeout_s)
         frame = self._handed_out.frame = self._hub.newer(last, timeout_s)
         return frame
 
@@ -243,7 +244,7 @@ class Fingertip:
         """The references in use; a new one applies to the next frames.
 
         Raises:
-            CalibrationMismatch: on setting the calibration of another device or design.
+            CalibrationError: on setting one without light, or of another device or design.
         """
         return self._references.calibration
 

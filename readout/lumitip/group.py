@@ -20,6 +20,7 @@ from lumitip.errors import ArgumentError, LinkTimeout
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Frame
 from lumitip.layout import Layout
+from lumitip.links.base import Calibrated
 from lumitip.links.url import redacted
 from lumitip.options import OpenOptions, check_options
 from lumitip.values import shown
@@ -31,6 +32,8 @@ class Moment:
 
     frames: Mapping[str, Frame]
     """By name."""
+    recorded: bool = False
+    """Whether all are of recordings: then `Frame.t_wall` says how close they are."""
 
     def __getitem__(self, name: str) -> Frame:
         return self.frames[name]
@@ -40,19 +43,29 @@ class Moment:
 
     @property
     def t(self) -> float:
-        """The middle of their times (s)."""
-        times = [f.t for f in self.frames.values()]
-        return (min(times) + max(times)) / 2.0
+        """The middle of their times (s); of recordings, by the clock of the first."""
+        first, times = next(iter(self.frames.values())), self._times
+        return (min(times) + max(times)) / 2.0 + (first.t - times[0])
 
     @property
     def spread_s(self) -> float:
         """Largest difference of their times (s): about one period of the slowest at most."""
-        times = [f.t for f in self.frames.values()]
-        return max(times) - min(times)
+        return max(self._times) - min(self._times)
+
+    @property
+    def _times(self) -> list[float]:
+        return [_time_of(frame, self.recorded) for frame in self.frames.values()]
+
+
+def _time_of(frame: Frame, recorded: bool) -> float:
+    """The time by which frames of several fingertips are compared (s). `Frame.t` of a recording is
+    by the clock of its computer, and late by the delay of its first frame."""
+    return frame.t_wall if recorded else frame.t
 
 
 class FingertipGroup:
-    """Several open fingertips; made by `FingertipGroup.open`.
+    """Several open fingertips; made by `FingertipGroup.open`. Recordings are aligned by
+    `Frame.t_wall`, also those of two computers; all others by `Frame.t`.
 
     Call `read` and `moments` from one thread at a time; `wait_latest` from any.
     """
@@ -61,6 +74,7 @@ class FingertipGroup:
         self.tips = MappingProxyType(dict(tips))
         """The fingertips by name."""
         self._waiting: dict[str, deque[Frame]] = {name: deque() for name in tips}
+        self._recorded = all(isinstance(t._hub.link, Calibrated) for t in tips.values())
 
     @classmethod
     def open(
@@ -110,15 +124,15 @@ class FingertipGroup:
         for name in self.tips:
             self._fill(name, 1, until)
         # The latest of the first frames: no earlier moment has a frame of each.
-        t = max(waiting[0].t for waiting in self._waiting.values())
+        t = max(self._time(waiting[0]) for waiting in self._waiting.values())
         for name, waiting in self._waiting.items():
-            while waiting[0].t < t:
+            while self._time(waiting[0]) < t:
                 self._fill(name, 2, until)
-                if waiting[1].t - t >= t - waiting[0].t:
+                if self._time(waiting[1]) - t >= t - self._time(waiting[0]):
                     break
                 waiting.popleft()
         taken = {name: waiting.popleft() for name, waiting in self._waiting.items()}
-        return Moment(MappingProxyType(taken))
+        return Moment(MappingProxyType(taken), self._recorded)
 
     def moments(self, timeout: float | None = 1.0) -> Iterator[Moment]:
         """Repeat `read`."""
@@ -127,7 +141,8 @@ class FingertipGroup:
 
     def wait_latest(self, timeout_s: float | None = 1.0) -> Moment:
         """The newest frame of each fingertip, once each is newer than the last that this thread
-        got; waits up to `timeout_s` (s), `None` without limit. For control loops: nothing queues.
+        got; waits up to `timeout_s` (s), `None` without limit. The first frames of a thread are as
+        of `Fingertip.wait_latest`. For control loops: nothing queues.
 
         Raises:
             LinkTimeout: if a fingertip sent no newer frame in time; the message names it.
@@ -144,12 +159,15 @@ class FingertipGroup:
                 raise LinkTimeout(f"{name}: {error}") from error
         # While the last was waited for, the others may have sent again.
         newest = {name: self.tips[name].latest() or frame for name, frame in frames.items()}
-        return Moment(MappingProxyType(newest))
+        return Moment(MappingProxyType(newest), self._recorded)
 
     def close(self) -> None:
         """Disconnect all. From any thread; may be repeated."""
         for tip in self.tips.values():
             tip.close()
+
+    def _time(self, frame: Frame) -> float:
+        return _time_of(frame, self._recorded)
 
     def _fill(self, name: str, number: int, until: float) -> None:
         waiting = self._waiting[name]

@@ -164,6 +164,19 @@ class Hub:
                 return frame
         raise self.silent(timeout_s)
 
+    def outdated(self, max_age_s: float | None) -> Frame | None:
+        """The newest frame if it is older than this (s) or the link is not connected, else `None`:
+        a reader that got none yet must not take it for one of now.
+
+        Raises:
+            ArgumentError: if the time is wrong.
+        """
+        max_age_s, newest = seconds(max_age_s, "timeout_s"), self._newest
+        if newest is None:
+            return None
+        too_old = max_age_s is not None and time.monotonic() - newest[1] > max_age_s
+        return newest[0] if too_old or not self._connected else None
+
     def fresh(self, max_age_s: float | None = None) -> Frame | None:
         """The newest frame, at most `max_age_s` old (s); `None`: of any age, and before the first.
 

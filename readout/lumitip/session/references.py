@@ -34,7 +34,8 @@ class References:
         """The calibration in use; a new one applies to the next frames.
 
         Raises:
-            CalibrationMismatch: on setting the calibration of another device or design.
+            CalibrationError: on setting one with a cell that is not lighter with an empty grasp
+                than in the dark, or, a `CalibrationMismatch`, of another device or design.
         """
         return self._calibration
 
@@ -43,8 +44,9 @@ class References:
         arguments.instance(calibration, Calibration, "calibration", CalibrationError)
         layout = self._hub.link.layout
         calibration.check(self._hub.link.device_id, layout.design_hash, len(layout))
+        correction = calibration.correction()  # may refuse it, and the one in use stays
         self._calibration = calibration
-        self._hub.intake.correction = calibration.correction()
+        self._hub.intake.correction = correction
 
     def measure(self, kind: Kind, num_samples: int, keep: bool) -> Calibration:
         """See `Fingertip.tare`."""

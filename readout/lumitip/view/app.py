@@ -125,13 +125,7 @@ async def _tare(registry: FingerRegistry, body: dict[str, Any], request: Request
     kind = body.get("kind", "empty")
     if kind not in ("empty", "dark"):
         raise ViewError(f"kind is {kind!r}; allowed are empty and dark")
-    recording = finger.status()["recording"]
-    if recording and recording["on"]:
-        raise ViewError(
-            f"{recording['file']} is being recorded with the references of its start. Stop it, "
-            "then tare"
-        )
-    await anyio.to_thread.run_sync(finger.tip.tare, kind)
+    await anyio.to_thread.run_sync(finger.tare, kind)
     return {"said": f"{finger.tip.device_id}: tared, {kind} reference"}
 
 
@@ -140,7 +134,10 @@ async def _record(
 ) -> dict[str, Any]:
     """`{"on": true | false}`"""
     _, finger = _finger(registry, request)
-    if body.get("on") is True:
+    on = body.get("on")
+    if type(on) is not bool:
+        raise ViewError(f"on is {on!r:.40}; true or false is needed")
+    if on:
         _needs_device(finger)
         path = await anyio.to_thread.run_sync(registry.fresh, finger)
         await anyio.to_thread.run_sync(finger.record, path)
@@ -151,6 +148,8 @@ async def _record(
 
 async def _close(registry: FingerRegistry, _: dict[str, Any], request: Request) -> dict[str, Any]:
     number, finger = _finger(registry, request)
+    if finger.player is None:
+        raise ViewError(f"{finger.tip.device_id} is live; only a replay can be closed from here")
     await anyio.to_thread.run_sync(registry.remove, number)
     return {"said": f"{finger.tip.device_id} closed"}
 
@@ -191,9 +190,6 @@ def _number(body: dict[str, Any], name: str) -> float | None:
 
 async def _replay(registry: FingerRegistry, body: dict[str, Any], _: Request) -> dict[str, Any]:
     """`{"name": "run.mcap"}`, a recording in the folder"""
-    from lumitip.view.player import Player
-
-    path = registry.recording(str(body.get("name")))
-    player = await anyio.to_thread.run_sync(Player, path)
-    finger = await anyio.to_thread.run_sync(Finger.play, path.name, player, (), registry.expected)
-    return {"said": f"replaying {path.name}", "number": registry.add(finger)}
+    name = str(body.get("name"))
+    number = await anyio.to_thread.run_sync(registry.replay, name)
+    return {"said": f"replaying {name}", "number": number}

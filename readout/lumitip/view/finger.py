@@ -8,7 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from lumitip.errors import LinkError
+from lumitip.calibration import Kind
+from lumitip.errors import LinkError, ViewError
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Frame
 from lumitip.layout import Layout
@@ -64,6 +65,8 @@ class Finger:
         self.state = "connected"
         self.detail = ""
         self.estimates = Estimates(tip.layout, expected)
+        self.warning = ""
+        """A fault that does not end the reading."""
         self._failed = False
         self._sinks = sinks
         self._processor = Processor(tip.layout)
@@ -73,6 +76,8 @@ class Finger:
         self._began = time.monotonic()
         self._lock = threading.Lock()
         self._recorder = Recorder()
+        self._taring = False
+        self._references = threading.Lock()  # held while a tare or a recording starts
         self._changed: Callable[[], None] = lambda: None
         self._thread = threading.Thread(target=self._run, name="lumitip-view", daemon=True)
 
@@ -164,13 +169,39 @@ class Finger:
         self.detail = event.detail
         self._changed()
 
+    def tare(self, kind: Kind) -> None:
+        """Measure a reference, but not during a recording, which has the references of its start.
+
+        Raises:
+            LumitipError: as `Fingertip.tare`, or if a recording or another tare is running.
+        """
+        with self._references:
+            self._refuse_while_taring("tare again afterwards")
+            recording = self._recorder.status()
+            if recording and recording["on"]:
+                raise ViewError(
+                    f"{recording['file']} is being recorded with the references of its start. "
+                    "Stop it, then tare"
+                )
+            self._taring = True
+        try:
+            self.tip.tare(kind)
+        finally:
+            self._taring = False
+
     def record(self, path: Path) -> None:
         """Start a recording.
 
         Raises:
-            LumitipError: as `Recorder.start`.
+            LumitipError: as `Recorder.start`, or if a reference is being measured.
         """
-        self._recorder.start(path, self.tip)
+        with self._references:
+            self._refuse_while_taring("record afterwards")
+            self._recorder.start(path, self.tip)
+
+    def _refuse_while_taring(self, remedy: str) -> None:
+        if self._taring:
+            raise ViewError(f"{self.tip.device_id}: a reference is being measured; {remedy}")
 
     def stop_recording(self) -> Path | None:
         """End the recording; returns its file, `None` if there was none."""
@@ -188,6 +219,7 @@ class Finger:
         return {
             "state": self.state,
             "detail": self.detail,
+            "warning": self.warning,
             "read": self.count,
             "silent_s": self._silent_s(),
             **vars(stats),
@@ -195,6 +227,7 @@ class Finger:
             "drift": None if drift is None else str(drift),
             "calibrated": self.tip.calibration.correction() is not None,
             "estimates": {"state": self.estimates.state, "detail": self.estimates.detail},
+            "taring": self._taring,
             "recording": self._recorder.status(),
             "scene": self.tip.simulated.placement() if self.tip.simulated else None,
             "player": self.player.status() if self.player else None,
@@ -213,14 +246,15 @@ class Finger:
             self.state = "ended"
         except LinkError as error:
             self._fail(str(error))
-        except BaseException as error:  # noqa: BLE001 - panics of Rerun are no Exception
-            _log.error("reading of %s has stopped", self.url, exc_info=error)
+        except Exception as error:  # noqa: BLE001 - the thread ends; the page says why
+            _log.exception("reading of %s has stopped", self.url)
             self._fail(f"{type(error).__name__}: {error}")
         self._changed()
 
     def _fail(self, why: str) -> None:
         self._failed = True
         self.state, self.detail = "failed", why
+        self._recorder.fail(why)
 
     def _take(self, frame: Frame) -> None:
         with self._lock:
@@ -230,8 +264,18 @@ class Finger:
             self._frames.append((frame, time.monotonic()))
         self._recorder.write(frame)
         for sink in self._sinks:
-            sink.take(self, frame)
+            try:
+                sink.take(self, frame)
+            except BaseException as error:  # noqa: BLE001 - panics of Rerun are no Exception
+                self._drop(sink, error)
         self._changed()
+
+    def _drop(self, failed: Sink, error: BaseException) -> None:
+        """Send no more frames to a sink that has failed; reading and recording go on."""
+        self._sinks = tuple(sink for sink in self._sinks if sink is not failed)
+        name = type(failed).__name__
+        self.warning = f"{name} has failed and gets no more frames: {type(error).__name__}: {error}"
+        _log.error("%s: %s", self.url, self.warning, exc_info=error)
 
 
 class _Later:

@@ -18,6 +18,12 @@ _CAUSES = {
     "queue": ("not read in time", "Close other programs, or lower the rate."),
     "page": ("not drawn by this page", "Recordings have them. Close other tabs."),
 }
+_OF_REPLAYS = {
+    "link": ("missing in the recording", ""),
+    "page": ("not drawn by this page", "Close other tabs, or lower the speed."),
+}
+
+_NONE = "No frame was lost since this page connected."
 
 
 @dataclass
@@ -28,13 +34,18 @@ class _Loss:
 
 
 class Losses:
-    """Losses since a page was opened, for one browser."""
+    """Losses since a page connected, for one browser.
 
-    def __init__(self) -> None:
+    Args:
+        replayed: whether the frames are of a recording.
+    """
+
+    def __init__(self, replayed: bool = False) -> None:
+        self._causes = _CAUSES | _OF_REPLAYS if replayed else _CAUSES
         self._before: dict[str, int] | None = None
         self._first: dict[str, int] = {}
         self._recent: deque[_Loss] = deque()
-        self._shown = {"text": "No frame was lost since this page was opened.", "fresh": False}
+        self._shown = {"text": _NONE, "fresh": False}
         self._shown_at_s = -RENEWED_S
 
     def status(self, stats: Stats, skipped: int, now_s: float | None = None) -> dict[str, Any]:
@@ -68,17 +79,17 @@ class Losses:
             for loss in self._recent:
                 by_cause[loss.cause] = by_cause.get(loss.cause, 0) + loss.frames
             cause = max(by_cause, key=by_cause.__getitem__)
-            what, remedy = _CAUSES[cause]
+            what, remedy = self._causes[cause]
             text = f"{_frames(by_cause[cause])} {what} in the last {HELD_S:.0f} s. {remedy}"
-            return {"text": text, "fresh": True}
+            return {"text": text.strip(), "fresh": True}
         assert self._before is not None
         lost = sum(self._before.values()) - sum(self._first.values())
         if lost:
-            text = f"{_frames(lost)} lost or not drawn since this page was opened, none just now."
+            text = f"{_frames(lost)} lost or not drawn since this page connected, none just now."
         elif stats.dropped is None:
             text = "This device does not number its frames, so losses on the way are not known."
         else:
-            text = "No frame was lost since this page was opened."
+            text = _NONE
         return {"text": text, "fresh": False}
 
 

@@ -21,6 +21,12 @@ MOST_BYTES = 1 << 29
 SLOWEST, FASTEST = 0.1, 16.0
 
 
+def content_of(path: Path) -> tuple[str, int, int]:
+    """Path, time of change and size of a file: the same while its content is."""
+    found = path.stat()
+    return str(path.resolve()), found.st_mtime_ns, found.st_size
+
+
 class Player:
     """Plays the frames of a recording. Thread-safe.
 
@@ -36,6 +42,8 @@ class Player:
 
     def __init__(self, path: Path, speed: float = 1.0, finger: str | None = None) -> None:
         reader = Reader(path, tolerant=True, finger=finger)
+        self.content = content_of(path)
+        """See `content_of`."""
         self.layout: Layout = reader.layout
         self.device_id = reader.metadata.device_id
         self.calibration = reader.metadata.calibration

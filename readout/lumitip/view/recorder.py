@@ -16,14 +16,15 @@ _log = logging.getLogger(__name__)
 
 
 class Recorder:
-    """The current recording of a finger. Thread-safe."""
+    """The current recording of a finger. Thread-safe.
+
+    The disk may be slow, so `status` waits for nothing: it returns what the last step has left.
+    """
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._writer: Writer | None = None
-        self._path: Path | None = None
-        self._frames = 0
-        self._error: str | None = None
+        self._status: dict[str, Any] | None = None  # replaced, never changed
 
     def start(self, path: Path, tip: Fingertip) -> None:
         """Start a recording.
@@ -35,12 +36,12 @@ class Recorder:
 
         with self._lock:
             if self._writer:
-                raise ViewError(f"{self._path} is being recorded. Stop it first")
+                raise ViewError(f"{self._writer.path} is being recorded. Stop it first")
             path.parent.mkdir(parents=True, exist_ok=True)
             self._writer = Writer(
                 path, tip.layout, device_id=tip.device_id, calibration=tip.calibration
             )
-            self._path, self._frames, self._error = path, 0, None
+            self._status = {"on": True, "file": path.name, "frames": 0, "error": None}
 
     def write(self, frame: Frame) -> None:
         """Write a frame if a recording is running; an error ends it."""
@@ -49,29 +50,47 @@ class Recorder:
                 return
             try:
                 self._writer.write(frame)
-                self._frames += 1
             except (OSError, LumitipError) as error:
-                self._error = f"the recording ended: {error}"
-                _log.warning("%s: %s", self._path, self._error)
-                self._writer = None
+                self._ended(str(error))
+            else:
+                self._status = {**(self._status or {}), "frames": self._writer.frames}
+
+    def fail(self, why: str) -> None:
+        """End a recording whose frames have ended by an error."""
+        with self._lock:
+            if not self._writer:
+                return
+            try:
+                self._writer.close()
+            except (OSError, LumitipError) as error:
+                why = f"{why}; then: {error}"
+            self._ended(why)
 
     def stop(self) -> Path | None:
-        """End the recording; returns its file, `None` if there was none."""
+        """End the recording; returns its file, `None` if there was none.
+
+        Raises:
+            LumitipError: if it cannot be completed.
+        """
         with self._lock:
             if not self._writer:
                 return None
-            writer, self._writer = self._writer, None
-            writer.close()
-            return self._path
+            path = self._writer.path
+            try:
+                self._writer.close()
+            except (OSError, LumitipError) as error:
+                self._ended(str(error))
+                raise
+            self._ended(None)
+            return path
+
+    def _ended(self, why: str | None) -> None:
+        error = None if why is None else f"the recording ended: {why}"
+        if error:
+            _log.warning("%s: %s", self._writer and self._writer.path, error)
+        self._writer = None
+        self._status = {**(self._status or {}), "on": False, "error": error}
 
     def status(self) -> dict[str, Any] | None:
-        """State of the recording for JSON, `None` before the first."""
-        with self._lock:
-            if self._path is None:
-                return None
-            return {
-                "on": self._writer is not None,
-                "file": self._path.name,
-                "frames": self._frames,
-                "error": self._error,
-            }
+        """State of the recording for JSON, `None` before the first. Never waits."""
+        return self._status

@@ -12,6 +12,8 @@ from lumitip.errors import ViewError
 from lumitip.view.estimating import EXPECTED, Expected
 from lumitip.view.finger import Finger
 
+MOST_REPLAYS = 8
+"""Replays open at once: each has its frames in memory."""
 _SUFFIX = ".mcap"
 
 
@@ -35,6 +37,7 @@ class FingerRegistry:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._waking = threading.Event()
         self._adding = threading.Lock()
+        self._replaying = threading.Lock()
         for finger in fingers:
             self.add(finger)
 
@@ -132,6 +135,30 @@ class FingerRegistry:
         if name not in self.recordings():
             raise ViewError(f"there is no recording {name!r} in {self.folder}")
         return self.folder / name
+
+    def replay(self, name: str) -> int:
+        """Play a recording in the folder, in its open replay if there is one; returns its number.
+
+        Raises:
+            LumitipError: if there is no such recording, it cannot be played, or `MOST_REPLAYS`
+                are open.
+        """
+        from lumitip.view.player import Player, content_of
+
+        with self._replaying:
+            path = self.recording(name)
+            content = content_of(path)
+            replays = {number: f.player for number, f in self.fingers.items() if f.player}
+            for number, player in replays.items():
+                if player.content == content:
+                    player.control(playing=True)
+                    return number
+            if len(replays) >= MOST_REPLAYS:
+                raise ViewError(
+                    f"{len(replays)} replays are open; {MOST_REPLAYS} are allowed. Close one, then "
+                    f"replay {name}"
+                )
+            return self.add(Finger.play(name, Player(path), (), self.expected))
 
     def finished(self, name: str) -> Path:
         """The path of a recording that is complete.

@@ -8,12 +8,12 @@ origin of our own page, and other computers need the token.
 import ipaddress
 import socket
 import threading
-from http.cookies import CookieError, SimpleCookie
 from types import TracebackType
 from urllib.parse import parse_qsl, urlencode
 
 import uvicorn
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import cookie_parser
 from starlette.responses import PlainTextResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -158,7 +158,8 @@ class Guard:
 
     def _without_token(self, scope: Scope, headers: Headers) -> Response | None:
         """`None` if the token is right; a token in the address moves into a cookie."""
-        if self._is_token(_cookies(headers).get(self._cookie, "")):
+        # Cookies of other programs on this host may be none by the standard: read as browsers do.
+        if self._is_token(cookie_parser(headers.get("cookie", "")).get(self._cookie, "")):
             return None
         query = dict(parse_qsl(scope["query_string"].decode("latin-1")))
         if scope["type"] == "http" and self._is_token(query.pop("token", "")):
@@ -173,15 +174,6 @@ class Guard:
 
     def _is_token(self, text: str) -> bool:
         return is_token(text, self._token or "")
-
-
-def _cookies(headers: Headers) -> dict[str, str]:
-    try:
-        return {
-            name: cookie.value for name, cookie in SimpleCookie(headers.get("cookie", "")).items()
-        }
-    except CookieError:
-        return {}
 
 
 def _with_headers(send: Send) -> Send:

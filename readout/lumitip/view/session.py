@@ -43,7 +43,7 @@ class Feed:
         self._estimated: Estimated | None = None
         self._pending: deque[tuple[int, float | None]] = deque()
         self._ages: deque[float] = deque(maxlen=_AGES)
-        self._losses = Losses()
+        self._losses = Losses(replayed=finger.player is not None)
 
     def next(self, finger_number: int) -> bytes | None:
         """The next message, `None` if there is nothing new or the window is full."""

@@ -2,12 +2,15 @@
 
 import asyncio
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from lumitip import AsyncFingertip, FingertipGroup
+from lumitip import AsyncFingertip, FingertipGroup, Layout
 from lumitip.errors import ArgumentError, FingertipClosed, LinkTimeout, UrlError
+from lumitip.frame import RecordedFrame
+from lumitip.recording import Writer
 from lumitip.session.hub import Hub
 
 FAST = "twin://disc?rate=1000"
@@ -157,6 +160,36 @@ def test_the_newest_moment_of_a_group_queues_nothing(open_feed) -> None:
     sent.join()
     with pytest.raises(ArgumentError, match="timeout_s is -1"):
         group.wait_latest(-1.0)
+
+
+@pytest.mark.parametrize("booted_s", [0.0, 50_000.0])
+def test_recordings_are_aligned_by_the_wall_clock(
+    tmp_path: Path, layout: Layout, booted_s: float
+) -> None:
+    """Two at 100 Hz: of one computer, and of another one that was booted earlier."""
+    urls, raw = {}, np.full(len(layout), 20, np.uint8)
+    for name, delay_s, late_s, clock_s in (
+        ("left", 0.002, 0.0, 0.0),
+        ("right", 0.036, 0.203, booted_s),
+    ):
+        path = tmp_path / f"{name}.mcap"
+        with Writer(path, layout, device_id=name, start_wall=1000.0) as writer:
+            for i in range(60):
+                at = 0.01 * i + late_s
+                t_host = 70.0 + clock_s + at + delay_s
+                writer.write(RecordedFrame(i, at, t_host, 1000.0 + at, raw, 8, 0))
+        urls[name] = f"replay://{path}?speed=0"
+    with FingertipGroup.open(urls) as group:
+        moments = [group.read(10.0) for _ in range(20)]
+    for n, moment in enumerate(moments):
+        left, right = moment["left"], moment["right"]
+        assert (left.seq, right.seq) == (20 + n, n)
+        assert moment.recorded
+        assert moment.spread_s == pytest.approx(0.003, abs=1e-5)
+        # Frames keep their times; the moment has the clock of the first.
+        assert left.t == pytest.approx(70.0 + 0.01 * left.seq + 0.002, abs=1e-5)
+        assert right.t == pytest.approx(70.0 + booted_s + 0.01 * right.seq + 0.239, abs=1e-5)
+        assert moment.t == pytest.approx(left.t + 0.0015, abs=1e-5)
 
 
 def test_a_group_opens_all_or_none(monkeypatch: pytest.MonkeyPatch) -> None:

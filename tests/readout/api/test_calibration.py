@@ -48,10 +48,38 @@ def test_what_is_no_empty_grasp_is_refused_with_the_cells() -> None:
         none.measured("empty", covered)
     with pytest.raises(CalibrationError, match=r"^cells 0, 3: the noise is above 8 of"):
         none.measured("empty", restless)
-    with pytest.raises(CalibrationError, match=r"cells 0, 1, 2, 3: the light is above 76\.5"):
+    with pytest.raises(CalibrationError, match=r"^all 4 cells: the light is above 76\.5"):
         none.measured("dark", light)
     with pytest.raises(CalibrationError, match="less than 26 of 255 lighter"):
         _measured(60.0).measured("dark", np.full((5, 4), 50.0, np.float32))
+
+
+def test_a_calibration_that_is_refused_is_not_in_use(open_feed) -> None:
+    tip, feed = open_feed()
+    feed.packet(0)
+    design, cells = tip.layout.design_hash, len(tip.layout)
+    empty = np.full(cells, 200.0, np.float32)
+    good = tip.calibration = Calibration("feed", design, empty)
+    with pytest.raises(CalibrationError, match="not lighter"):
+        tip.calibration = Calibration("feed", design, empty, empty)
+    assert tip.calibration is good
+    feed.packet(1, value=155)
+    assert tip.latest().values == pytest.approx(np.full(cells, 127.5))
+
+
+def test_long_lists_of_cells_are_cut_so_that_the_remedy_is_read() -> None:
+    none = Calibration("dev", HASH)
+    for moving, said in (
+        (32, "all 32 cells:"),
+        (31, "cells 0, 1, 2 and 28 others:"),
+        (7, "cells 0, 1, 2 and 4 others:"),
+        (6, "cells 0, 1, 2, 3, 4, 5:"),
+        (1, "cell 0:"),
+    ):
+        light = np.full((20, 32), 200.0, np.float32)
+        light[::2, :moving] = 150.0
+        with pytest.raises(CalibrationError, match=rf"^{said} the noise .* Hold the fingers still"):
+            none.measured("empty", light)
 
 
 def test_it_is_kept_and_found_again(tmp_path: Path) -> None:

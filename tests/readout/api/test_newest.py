@@ -108,6 +108,53 @@ def test_an_old_frame_is_an_error_where_its_age_is_limited(open_feed) -> None:
         tip.latest(float("nan"))
 
 
+def test_the_first_frame_of_a_thread_is_of_now(open_feed) -> None:
+    tip, feed = open_feed()
+    feed.packet(0, t_host=time.monotonic() - 5.0)
+    with pytest.raises(LinkTimeout, match=r"no frame in 0\.02 s"):
+        tip.wait_latest(0.02)
+    feed.packet(500, t_host=time.monotonic())
+    assert tip.wait_latest(0.0).raw[0] == 500 % 251, "it came since"
+    got: list[object] = []
+
+    def first(timeout_s: float | None) -> None:
+        try:
+            got.append(tip.wait_latest(timeout_s).raw[0])
+        except LinkTimeout as error:
+            got.append(str(error))
+
+    def of_a_new_thread(timeout_s: float | None) -> object:
+        thread = threading.Thread(target=first, args=(timeout_s,))
+        thread.start()
+        thread.join(60.0)
+        return got[-1]
+
+    assert of_a_new_thread(30.0) == of_a_new_thread(None) == 500 % 251, "it is young enough"
+    feed.report(LinkEvent("lost", "gone"))
+    assert "the connection to feed is lost" in str(of_a_new_thread(0.02))
+    sent = threading.Timer(0.1, lambda: feed.packet(501, t_host=time.monotonic()))
+    sent.start()
+    assert of_a_new_thread(None) == 501 % 251, "it waits for a new one"
+    sent.join()
+
+
+def test_the_first_frame_of_a_coroutine_is_of_now(
+    open_feed, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tip, feed = open_feed()
+    monkeypatch.setattr(Fingertip, "open", lambda *_, **__: tip)
+
+    async def main() -> None:
+        feed.packet(0, t_host=time.monotonic() - 5.0)
+        async with AsyncFingertip.open("feed://") as opened:
+            with pytest.raises(LinkTimeout, match=r"no frame in 0\.02 s"):
+                await opened.wait_latest(0.02)
+            feed.packet(500, t_host=time.monotonic())
+            assert (await opened.wait_latest(30.0)).raw[0] == 500 % 251
+
+    asyncio.run(main())
+
+
 def test_a_recording_ages_from_its_arrival(tmp_path, layout) -> None:
     path = tmp_path / "run.mcap"
     with (

@@ -4,6 +4,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from playwright.sync_api import Browser, ConsoleMessage, Page, expect, sync_play
 from lumitip import Fingertip, Layout
 from lumitip.links.base import Arrival, Deliver, LinkEvent, Report
 from lumitip.protocol.packet import Packet, design_code
+from lumitip.recording import Writer
 from lumitip.session.hub import Hub
 from lumitip.view.finger import Finger
 from lumitip.view.registry import FingerRegistry
@@ -92,6 +94,19 @@ def still() -> Callable[..., Finger]:
         return Finger("still://", Fingertip(hub, 64, calibrated=False))
 
     return make
+
+
+@pytest.fixture
+def recording(tmp_path: Path) -> Path:
+    """800 frames at 100 Hz of a cable that moves."""
+    path = tmp_path / "recordings" / "run.mcap"
+    path.parent.mkdir()
+    with Fingertip.open("twin://cable?rate=2000&speed=240&noise=0") as tip:
+        frames = [tip.read() for _ in range(800)]
+        with Writer(path, tip.layout, device_id="finger", start_wall=1000.0) as writer:
+            for i, frame in enumerate(frames):
+                writer.write(replace(frame, t_wall=1000.0 + i / 100))
+    return path
 
 
 @pytest.fixture(scope="module")

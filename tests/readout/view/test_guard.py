@@ -113,6 +113,9 @@ def test_another_address_needs_the_token(serve: Serve) -> None:
     assert "SameSite=strict" in cookie
     shown = cookie.partition(";")[0]
     assert ask(server, "GET", "/", cookie=shown).status == 200
+    # Cookies are shared by all ports of a host; those of other programs lock nobody out.
+    for foreign in ('prefs={"theme":"dark"}', "a b=1", "=;;", "x=[1, 2]", 'q="'):
+        assert ask(server, "GET", "/", cookie=f"{foreign}; {shown}; {foreign}").status == 200
     assert stream_status(server, origin=origin, Cookie=shown) == 101
     assert stream_status(server, origin="http://example.org", Cookie=shown) == 403
     assert ask(server, "GET", "/", cookie=shown.replace("=", "=x")).status == 401
@@ -170,6 +173,10 @@ def test_files_outside_the_page_are_not_given(serve: Serve) -> None:
         ("/api/fingers/-1/close", {}, 404, ""),
         ("/api/fingers/%D9%A3/close", {}, 404, ""),
         ("/api/fingers/1/tare", {"kind": "full"}, 409, "allowed are empty and dark"),
+        ("/api/fingers/1/record", {}, 409, "on is None; true or false is needed"),
+        ("/api/fingers/1/record", {"on": "true"}, 409, "on is 'true'; true or false is needed"),
+        ("/api/fingers/1/record", {"on": 1}, 409, "on is 1; true or false is needed"),
+        ("/api/fingers/1/close", {}, 409, "is live; only a replay can be closed"),
         ("/api/fingers/1/tare", [], 400, "a JSON object"),
         ("/api/fingers/1/tare", b"[" * 100_000, 400, "a JSON object"),
         ("/api/replay", {"name": "../../etc/passwd"}, 409, "there is no recording"),

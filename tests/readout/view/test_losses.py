@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,8 @@ from playwright.sync_api import Page, expect
 
 from live_page import opened
 from lumitip import Layout
+from lumitip.frame import RecordedFrame
+from lumitip.recording import Writer
 from lumitip.session.stats import Dropped, Stats
 from lumitip.view.finger import Finger
 from lumitip.view.losses import Losses
@@ -33,7 +36,7 @@ def lost(**frames: int) -> Stats:
 @pytest.mark.parametrize("cause", CAUSES)
 def test_sentence_has_count_place_and_remedy(cause: str) -> None:
     losses = Losses()
-    assert losses.status(NONE, 0, 0.0)["text"] == "No frame was lost since this page was opened."
+    assert losses.status(NONE, 0, 0.0)["text"] == "No frame was lost since this page connected."
     said = losses.status(lost(**{cause: 1234}), 0, 3.0)
     what, remedy = CAUSES[cause]
     assert said["text"].startswith(f"1\u202f234 frames were {what} in the last 10 s. ")
@@ -62,9 +65,34 @@ def test_it_changes_every_two_seconds_at_most_and_goes_after_ten() -> None:
     assert len(changes) <= 10
     quiet = losses.status(lost(link=60, crc=20), 0, 40.0)
     assert quiet == {
-        "text": "80 frames were lost or not drawn since this page was opened, none just now.",
+        "text": "80 frames were lost or not drawn since this page connected, none just now.",
         "fresh": False,
     }
+
+
+def test_frames_that_a_recording_lacks_are_not_blamed_on_the_link() -> None:
+    losses = Losses(replayed=True)
+    losses.status(NONE, 0, 0.0)
+    said = losses.status(lost(link=12), 0, 3.0)["text"]
+    assert said == "12 frames were missing in the recording in the last 10 s."
+    losses = Losses(replayed=True)
+    losses.status(NONE, 0, 0.0)
+    said = losses.status(NONE, 40, 3.0)["text"]
+    assert said.startswith("40 frames were not drawn by this page in the last 10 s. Close other")
+
+
+@pytest.mark.slow
+def test_a_replay_says_what_its_recording_lacks(
+    serve: Serve, page: Page, layout: Layout, tmp_path: Path
+) -> None:
+    path = tmp_path / "run.mcap"
+    raw = np.full(len(layout), 20, np.uint8)
+    with Writer(path, layout, device_id="finger", start_wall=1000.0) as writer:
+        for i in range(0, 1000, 4):
+            at = 0.01 * i
+            writer.write(RecordedFrame(i, at, 5.0 + at, 1000.0 + at, raw, 8, 3 if i else 0))
+    opened(page, serve(f"replay://{path}?speed=0.5"))
+    expect(page.locator(".losses")).to_contain_text("frames were missing in the recording in the")
 
 
 def test_losses_from_before_the_page_are_not_its_own() -> None:

@@ -158,6 +158,21 @@ def test_several_fingers_side_by_side(serve: Serve, page: Page) -> None:
     expect(page.locator(".finger").nth(1)).to_have_class("finger chosen")
 
 
+def test_keys_go_to_the_finger_that_has_the_focus(
+    serve: Serve, page: Page, wait_for: WaitFor
+) -> None:
+    server = serve("twin://cable", "twin://edge")
+    opened(page, server)
+    expect(page.locator(".finger").nth(0)).to_have_class("finger chosen")
+    page.locator(".finger").nth(1).locator(".tare").focus()
+    expect(page.locator(".finger").nth(1)).to_have_class("finger chosen")
+    page.keyboard.press("r")
+    wait_for(lambda: server.registry.fingers[2].status()["recording"] is not None)
+    assert server.registry.fingers[1].status()["recording"] is None
+    page.keyboard.press("1")
+    expect(page.locator(".finger").nth(0)).to_have_class("finger chosen")
+
+
 def test_freeze_holds_the_picture_and_goes_on(serve: Serve, page: Page, wait_for: WaitFor) -> None:
     opened(page, serve("twin://demo"))
     frames, shown = "lumitip.panels.get(1).history.count", "lumitip.panels.get(1).newest.seq"
@@ -167,6 +182,28 @@ def test_freeze_holds_the_picture_and_goes_on(serve: Serve, page: Page, wait_for
     wait_for(lambda: page.evaluate(frames) > count + 50)
     assert page.evaluate(shown) > held
     assert page.evaluate(drawn) == held
+    # What redraws the page draws the same moment again.
+    canvases = "[...document.querySelectorAll('.finger canvas')].map((c) => c.toDataURL())"
+    words = "document.querySelector('aside').innerText.split('Link')[0]"
+    redraw = "dispatchEvent(new Event('themed'))"
+    page.evaluate(redraw)
+    frozen, said = page.evaluate(canvases), page.evaluate(words)
+    before = page.evaluate(frames)
+    wait_for(lambda: page.evaluate(frames) > before + 50)
+    for keys in ("vv", "oo", "www", "c"):
+        for key in keys:
+            page.keyboard.press(key)
+            assert page.evaluate(drawn) == held
+        assert page.evaluate(canvases) == frozen, keys
+    page.set_viewport_size({"width": 1200, "height": 760})
+    page.wait_for_timeout(300)
+    page.locator(".grid").click(position={"x": 200, "y": 200})
+    assert page.evaluate(drawn) == held
+    page.set_viewport_size({"width": 1280, "height": 800})
+    page.keyboard.press("c")
+    page.wait_for_timeout(300)
+    assert page.evaluate(canvases) == frozen
+    assert page.evaluate(words) == said
     page.keyboard.press("Space")
     wait_for(lambda: page.evaluate(drawn) > held + 50)
 
@@ -179,7 +216,10 @@ def test_what_is_old_does_not_look_as_if_it_were_now(
     shown = page.locator(".finger")
     opacity = "getComputedStyle(document.querySelector('.well')).opacity"
     assert page.evaluate(opacity) == "1"
+    state = shown.get_by_role("status").first
+    expect(state).to_have_text("connected")
     finger.on_event(LinkEvent("lost", "out of reach, trying again"))
+    expect(state).to_have_text("lost")
     expect(shown).to_have_class(re.compile("stale"))
     expect(shown.locator(".detail")).to_have_text("out of reach, trying again")
     assert float(page.evaluate(opacity)) < 0.5
@@ -193,6 +233,7 @@ def test_a_device_that_falls_silent_does_not_look_alive(
     page.goto(serve(still(layout, np.full(len(layout), 20), frames=100)).url)
     expect(page.locator(".finger")).to_have_class(re.compile("stale"))
     expect(page.locator(".detail")).to_have_text(re.compile("no frame for"))
+    expect(page.locator(".finger [role=status]").first).to_have_text("silent")
 
 
 def test_page_finds_a_server_that_was_started_anew(browser: Browser, tmp_path: Path) -> None:

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from lumitip import Layout
-from lumitip.errors import MissingExtra
+from lumitip.errors import LinkError, MissingExtra
 from lumitip.frame import Frame
 from lumitip.links.base import LinkEvent
 from lumitip.processing import Processor
+from lumitip.recording import summarise
 from lumitip.view.drawn import borders
 from lumitip.view.finger import Finger
 from lumitip.view.rerun_sink import RerunSink
@@ -86,25 +87,61 @@ class _Panic(BaseException):
 
 
 @pytest.mark.parametrize("fault", [OSError("the disk is full"), _Panic("the disk is full")])
-def test_a_sink_that_fails_is_told(
+def test_a_sink_that_fails_ends_neither_reading_nor_recording(
     fault: BaseException,
     layout: Layout,
     still: Callable[[Layout, np.ndarray], Finger],
     wait_for: Callable[..., None],
+    tmp_path: Path,
 ) -> None:
     class Failing:
+        calls = 0
+
         def take(self, _: Finger, __: Frame) -> None:
+            self.calls += 1
             raise fault
 
-    finger = still(layout, np.full(len(layout), 20))
-    finger = Finger("still://", finger.tip, sinks=(Failing(),))
+    class Sound:
+        calls = 0
+
+        def take(self, _: Finger, __: Frame) -> None:
+            self.calls += 1
+
+    failing, sound = Failing(), Sound()
+    tip = still(layout, np.full(len(layout), 20)).tip
+    finger = Finger("still://", tip, sinks=(failing, sound))
+    finger.record(tmp_path / "run.mcap")
     finger.start(lambda: None)
+    wait_for(lambda: finger.status()["recording"]["frames"] > 20)
+    status = finger.status()
+    assert (failing.calls, status["state"], status["recording"]["on"]) == (1, "connected", True)
+    assert sound.calls >= 20
+    assert status["warning"] == (
+        f"Failing has failed and gets no more frames: {type(fault).__name__}: the disk is full"
+    )
+    finger.close()
+
+
+def test_a_link_that_fails_ends_the_recording_with_an_error(
+    layout: Layout,
+    still: Callable[[Layout, np.ndarray], Finger],
+    wait_for: Callable[..., None],
+    tmp_path: Path,
+) -> None:
+    tip = still(layout, np.full(len(layout), 20)).tip
+    finger = Finger("still://", tip)
+    finger.record(tmp_path / "run.mcap")
+    finger.start(lambda: None)
+    wait_for(lambda: finger.status()["recording"]["frames"] > 5)
+    tip._hub._report(LinkEvent("failed", "unplugged", LinkError("unplugged")))
     wait_for(lambda: finger.status()["state"] == "failed")
-    detail = f"{type(fault).__name__}: the disk is full"
+    wait_for(lambda: not finger.status()["recording"]["on"])
+    assert finger.status()["recording"]["error"] == "the recording ended: unplugged"
+    assert summarise(tmp_path / "run.mcap").damage == ()
     for kind in ("lost", "connected", "warm"):
         finger.on_event(LinkEvent(kind, "the link lives on"))
         assert finger.status()["state"] == "failed"
-        assert finger.status()["detail"] == detail
+        assert finger.status()["detail"] == "unplugged"
     finger.close()
 
 

@@ -6,7 +6,6 @@ import { fileOf, get, post, Stream } from "./stream.js";
 
 const SPANS_S = [10, 30, 60];
 const NOTICE_MS = 6000;
-const NEVER_MS = 2 ** 31 - 1;
 const KEY_NAMES = { " ": "Space", 1: "1 … 9", ArrowLeft: "←", ArrowRight: "→" };
 
 const panels = new Map();
@@ -19,12 +18,13 @@ let listing = false;
 
 const byId = (id) => document.getElementById(id);
 
-/** Show a notice to the user for some time. */
-function say(text, isError = false, forMs = NOTICE_MS) {
+/** Show a notice for some time; an error until the next notice or a click on it. */
+function say(text, isError = false) {
   byId("notice").textContent = text;
   byId("notice").className = isError ? "error" : "";
+  byId("notice").title = isError ? "click to remove" : "";
   clearTimeout(noticed);
-  noticed = setTimeout(() => { byId("notice").textContent = ""; }, forMs);
+  if (!isError) noticed = setTimeout(() => say(""), NOTICE_MS);
 }
 
 /** Show the fingers that the server has now. */
@@ -45,12 +45,15 @@ async function list() {
       const panel = new Panel(layout, say);
       panels.set(layout.number, panel);
       byId("fingers").append(panel.element);
-      panel.element.addEventListener("pointerdown", () => choose(layout.number));
+      for (const event of ["pointerdown", "focusin"]) {
+        panel.element.addEventListener(event, () => choose(layout.number));
+      }
       panel.placed(show);
       // Of an ended replay there is one message only, which may come before the list of fingers.
       const { frames, estimate } = newest;
       if (frames.has(layout.number)) panel.take(frames.get(layout.number));
       if (estimate.has(layout.number)) panel.estimated(estimate.get(layout.number));
+      if (show.frozen) panel.freeze(true);
     }
     choose(panels.has(chosen) ? chosen : fingers[0]?.number);
   } catch (error) {
@@ -88,7 +91,7 @@ const stream = new Stream({
       newest.estimate.clear();
       say("");
       list();
-    } else say("no connection to lumitip view, trying again", true, NEVER_MS);
+    } else say("no connection to lumitip view, trying again", true);
   },
 });
 
@@ -106,7 +109,8 @@ function redraw() {
 function freeze() {
   show.frozen = !show.frozen;
   byId("freeze").setAttribute("aria-pressed", show.frozen);
-  if (!show.frozen) redraw();
+  for (const panel of panels.values()) panel.freeze(show.frozen);
+  redraw(); // when it freezes, all parts of the page come to the same moment
 }
 
 /** Toggle values or overlay. */
@@ -196,6 +200,7 @@ new Keys([
 byId("freeze").onclick = freeze;
 byId("replay").onclick = replay;
 byId("help").onclick = help;
+byId("notice").onclick = () => say("");
 window.addEventListener("themed", redraw);
 drawScale(byId("scale"));
 

@@ -15,9 +15,9 @@ const EVERY_MS = { drawPlot: 40, drawTrends: 100, writeNumbers: 100, writeWords:
 const SILENT_S = 1; // without a frame the display is marked as old
 
 /** Text beside the name: the most urgent message. */
-function detailOf({ state, detail, silent_s, drift, player }, silent) {
+function detailOf({ state, detail, warning, silent_s, drift, player }, silent) {
   if (state !== "connected") return detail;
-  if (player?.damage) return player.damage;
+  if (warning || player?.damage) return warning || player.damage;
   return silent ? `no frame for ${silent_s.toFixed(0)} s` : drift || "";
 }
 
@@ -40,6 +40,10 @@ export class Panel {
     this.find("h2").textContent = layout.device;
     this.find(".url").textContent = layout.url === layout.device ? "" : layout.url;
     this.find(".url").title = `${layout.url}, design ${layout.design}`;
+    this.taring = false;
+    this.held = null; // what is drawn while the display is frozen
+    this.refused = ""; // the last action, if it was refused
+    this.failed = ""; // the last error of a recording
     this.find(".tare").onclick = () => this.tare();
     this.find(".record").onclick = () => this.record();
     if (layout.replayed) this.player = new Player(this);
@@ -58,15 +62,27 @@ export class Panel {
     this.show = show;
     this.grid = new Grid(this.find(".grid"), this.layout);
     this.history = new History(this.layout.x_mm.length);
-    this.plot = new Plot(this.find(".plot"), this.history);
-    this.trends = ["offset", "angle"].map(
-      (name) => new Trend(this.find(`canvas.${name}`), name, this.estimates, this.published),
-    );
+    this.plot = new Plot(this.find(".plot"));
+    this.trends = ["offset", "angle"].map((name) => new Trend(this.find(`canvas.${name}`), name));
     this.legend();
     new ResizeObserver(() => {
       this.grid.place();
       this.draw(true);
     }).observe(this.find(".grid"));
+  }
+
+  /** Draw the moment of this call until further notice, or again the newest. */
+  freeze(whether) {
+    const { newest, estimate, status, history, estimates, published } = this;
+    this.held = whether ? {
+      newest, estimate, status,
+      history: history.copy(), estimates: estimates.copy(), published: published.copy(),
+    } : null;
+  }
+
+  /** All that is drawn. */
+  get drawn() {
+    return this.held ?? this;
   }
 
   /** Store frames for the next redraw. */
@@ -98,12 +114,13 @@ export class Panel {
 
   /** Draw new frames, or everything; what changes too fast to be read is drawn when it is due. */
   draw(all = false) {
-    if (!this.newest) return;
+    const { newest, estimate } = this.drawn;
+    if (!newest) return;
     const now = performance.now();
     if (this.fresh || all) {
       this.fresh = false;
-      this.grid.draw(this.newest.values, this.newest.contact, this.estimate, this.show);
-      this.element.dataset.seq = this.newest.seq;
+      this.grid.draw(newest.values, newest.contact, estimate, this.show);
+      this.element.dataset.seq = newest.seq;
       this.late = new Set(Object.keys(EVERY_MS));
       this.count(now);
     }
@@ -116,24 +133,26 @@ export class Panel {
   }
 
   drawPlot() {
-    this.plot.draw(this.grid.selected, this.show.span);
+    this.plot.draw(this.drawn.history, this.grid.selected, this.show.span);
   }
 
   drawTrends() {
-    for (const trend of this.trends) trend.draw(this.history.last, this.show.span);
+    for (const trend of this.trends) trend.draw(this.drawn, this.show.span);
   }
 
   /** The numbers beside the cells. */
   writeNumbers() {
-    const { contact } = this.newest;
+    const { newest: { contact }, estimate } = this.drawn;
     set(this.find(".shape"), contact.shape);
     fill(this.find(".contact"), contactReadings(contact));
-    set(this.find(".kind"), this.estimate?.kind ?? "–");
-    fill(this.find(".estimate"), estimateReadings(this.estimate));
+    this.find(".grid").setAttribute("aria-label", `cells, shape ${contact.shape}`);
+    set(this.find(".kind"), estimate?.kind ?? "–");
+    fill(this.find(".estimate"), estimateReadings(estimate));
   }
 
   writeWords() {
-    if (this.status) set(this.find(".words"), estimateWords(this.estimate, this.status));
+    const { estimate, status } = this.drawn;
+    if (status) set(this.find(".words"), estimateWords(estimate, status));
   }
 
   count(now) {
@@ -156,14 +175,15 @@ export class Panel {
     const detail = detailOf(status, silent);
     this.find(".detail").textContent = detail;
     this.find(".detail").title = detail;
+    this.find(".detail").classList.toggle("bad", Boolean(status.warning));
     this.element.classList.toggle("stale", silent || status.state !== "connected");
     this.find(".dot").className = `dot ${status.state}`;
-    this.find(".dot").title = status.state;
+    set(this.find(".state"), silent && status.state === "connected" ? "silent" : status.state);
     this.find(".record").setAttribute("aria-pressed", on);
-    this.find(".grid").setAttribute("aria-label", `cells, shape ${this.newest?.contact.shape}`);
     fill(this.find(".link"), linkReadings(status, this.pictures));
     set(this.find(".losses"), status.losses.text);
     this.find(".losses").classList.toggle("bad", status.losses.fresh);
+    this.allow();
     this.recorded(status.recording);
     this.player?.update(status.player);
     this.scene?.update(status.scene);
@@ -173,10 +193,15 @@ export class Panel {
   recorded(recording) {
     const [text, link] = [this.find(".recorded span"), this.find(".recorded a")];
     const done = Boolean(recording && !recording.on);
+    const error = recording?.error;
+    const failed = error ? `${recording.file}: ${error}` : "";
     link.hidden = !done;
+    this.find(".recorded").classList.toggle("bad", Boolean(failed));
+    if (failed && failed !== this.failed) this.say(`${this.layout.device}: ${error}`, true);
+    this.failed = failed;
     if (!recording) return;
     const frames = `${COUNT(recording.frames)} frames`;
-    set(text, recording.error || (done ? frames : `recording ${recording.file}: ${frames}`));
+    set(text, error || (done ? frames : `recording ${recording.file}: ${frames}`));
     if (!done) return;
     set(link, recording.file);
     link.href = fileOf(recording.file);
@@ -186,23 +211,33 @@ export class Panel {
   async ask(action, body = {}) {
     try {
       const { said } = await post(`api/fingers/${this.layout.number}/${action}`, body);
-      if (said) this.say(said);
+      // What was refused before and is now done needs no error any more.
+      if (said || this.refused === action) this.say(said ?? "");
+      this.refused = "";
     } catch (error) {
       this.say(error.message, true);
+      this.refused = action;
     }
   }
 
   async tare() {
-    const button = this.find(".tare");
-    if (button.disabled || this.player) return;
-    button.disabled = true;
+    if (this.find(".tare").disabled || this.player) return;
+    this.taring = true;
+    this.allow();
     this.say(`${this.layout.device}: measuring the empty grasp, hold still`);
     await this.ask("tare", { kind: "empty" });
-    button.disabled = false;
+    this.taring = false;
+    this.allow();
+  }
+
+  /** No button while this page or another one measures a reference. */
+  allow() {
+    const taring = this.taring || Boolean(this.status?.taring);
+    for (const button of [".tare", ".record"]) this.find(button).disabled = taring;
   }
 
   record() {
-    if (this.player) return null;
+    if (this.find(".record").disabled || this.player) return null;
     return this.ask("record", { on: !this.status?.recording?.on });
   }
 

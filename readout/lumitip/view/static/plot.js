@@ -27,6 +27,12 @@ export class History {
     this.last = -Infinity;
   }
 
+  /** The same, which stays as it is. */
+  copy() {
+    const rings = ["t", "mean", "least", "most", "values"].map((name) => [name, this[name].slice()]);
+    return Object.assign(Object.create(History.prototype), this, Object.fromEntries(rings));
+  }
+
   /** Add the frames of a message; clear first if time goes back. */
   take({ t, values, frames }) {
     for (let i = 0; i < frames; i += 1) {
@@ -66,12 +72,12 @@ export class History {
 }
 
 export class Plot {
-  constructor(canvas, history) {
+  constructor(canvas) {
     this.canvas = canvas;
-    this.history = history;
   }
 
-  draw(selected, span) {
+  draw(history, selected, span) {
+    this.history = history;
     const { brush, width, height } = fit(this.canvas);
     const axes = {
       brush, span, left: LEFT, right: width - 2, top: TOP, bottom: height - BOTTOM,

@@ -32,8 +32,13 @@ function lineThrough([x, y], angle, beforeDeg) {
 
 /** Points over time, the newest last; time that goes back clears them. */
 export class Series {
-  constructor() {
-    this.points = [];
+  constructor(points = []) {
+    this.points = points;
+  }
+
+  /** The same, which stays as it is. */
+  copy() {
+    return new Series([...this.points]);
   }
 
   add(point) {
@@ -47,18 +52,18 @@ export class Series {
 
 /** A plot of one number of the pose: `name` is "offset" or "angle". */
 export class Trend {
-  constructor(canvas, name, estimates, published) {
-    Object.assign(this, { canvas, name, estimates, published });
+  constructor(canvas, name) {
+    Object.assign(this, { canvas, name });
   }
 
-  draw(now, span) {
+  draw({ estimates: estimated, published: fitted, history: { last: now } }, span) {
     const { brush, width, height } = fit(this.canvas);
     const axes = { brush, span, now, left: LEFT, right: width - 2, top: TOP, bottom: height - BOTTOM };
     axes.x = (t) => axes.right - ((now - t) / span) * (axes.right - axes.left);
     this.axes = axes;
     brush.clearRect(0, 0, width, height);
-    const estimates = this.seen(this.estimates, axes);
-    const published = this.seen(this.published, axes);
+    const estimates = this.seen(estimated, axes);
+    const published = this.seen(fitted, axes);
     this.scale(axes, [...estimates, ...published]);
     drawTimes(axes, axes.right - axes.left > 400 ? 5 : 2);
     this.drawValues(axes);
