@@ -17,7 +17,8 @@ PANEL = "lumitip.panels.get(1)"
 NEWEST = f"{PANEL}.newest.contact"
 WANTED = (
     f"{NEWEST}.shape === 'corner' && {NEWEST}.markers.length > 24"
-    f" && {PANEL}.estimate.kind === 'corner' && !{PANEL}.find('.words').textContent"
+    f" && {PANEL}.estimate.kind === 'corner'"
+    f" && ['', 'Not tared yet'].includes({PANEL}.find('.words').textContent)"
     f" && !{PANEL}.estimate.flags.length"
 )
 PLOT_FILLED_MS = 14_000
