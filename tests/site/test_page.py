@@ -145,11 +145,11 @@ def test_only_a_report_of_these_files_counts(edited: Path) -> None:
     text = header.read_text(encoding="utf-8")
     header.write_text(text + "\n", encoding="utf-8")
     quality = " ".join(_quality(edited).split())
-    assert quality.startswith("Not checked since the files changed Run make outputs.")
+    assert quality.startswith("Not checked since the files changed Run make outputs;")
     header.write_text(text, encoding="utf-8")
     assert "checks pass" in _quality(edited)
     (edited / "checks.json").unlink()
-    assert " ".join(_quality(edited).split()).startswith("Not checked Run make outputs.")
+    assert " ".join(_quality(edited).split()).startswith("Not checked Run make outputs;")
 
 
 def test_a_row_shows_its_parts_and_goes_back(opened: Opened) -> None:

@@ -86,7 +86,11 @@ def _quality(folder: Folder, checks: Sequence[dict[str, Any]], errors: Mapping[s
     )
     if not checks:
         since = "" if folder.checked is None else " since the files changed"
-        return _answer("How good is it?", f"Not checked{since}", f"Run make outputs. {more}")
+        run = (
+            "Run make outputs; or lumitip-fab check with --report checks.json in this folder, and "
+            "lumitip-fab page."
+        )
+        return _answer("How good is it?", f"Not checked{since}", f"{run} {more}")
     if failed:
         return _answer("How good is it?", f"{len(failed)} of {len(names)} checks fail", more, "bad")
     measured = f"{len(checks)} measurements of the files are within their limits. {more}"
