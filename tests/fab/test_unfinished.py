@@ -92,6 +92,15 @@ def test_a_folder_without_a_page_gets_none(made: Made) -> None:
     assert made.names() == {"a.txt"}
 
 
+def test_files_of_another_program_stay(made: Made) -> None:
+    made.out.mkdir()
+    mine = {name: made.out / name for name in ("index.html", "checks.json", "checks.xml")}
+    for path in mine.values():
+        path.write_text("mine")
+    made({"a.txt": "one"})
+    assert all(path.read_text() == "mine" for path in mine.values())
+
+
 def test_the_lock_is_there_while_marks_are_written(
     made: Made, monkeypatch: pytest.MonkeyPatch
 ) -> None:

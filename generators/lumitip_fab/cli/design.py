@@ -49,8 +49,8 @@ def run(options: argparse.Namespace) -> int:
         failed |= _fails(options.out / point.name, silent)
     for folder in outdated(options.out):
         ERR.print(
-            f"{folder}: was built of another design than {folder}.toml is now: remove the folder, "
-            "or build it again",
+            f"{folder}: is not built of a point-N.toml that is here now: remove the folder, or "
+            "build it again",
             soft_wrap=True,
         )
     return FAILED if failed else 0

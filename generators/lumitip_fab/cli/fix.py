@@ -22,8 +22,7 @@ _MARK = "\ufeff"  # with which some editors begin a file
 
 def run(options: argparse.Namespace) -> int:
     """Change the file, and print what was changed."""
-    plan, error = _planned(options.file)
-    _write(options.file, plan)
+    plan, error = fix(options.file)
     changes = [step.remedies[0] for step in plan.steps]
     if options.json:
         print(
@@ -46,20 +45,20 @@ def run(options: argparse.Namespace) -> int:
     return 0 if plan.complete else REFUSED
 
 
-def fix(file: Path) -> Plan:
+def fix(file: Path) -> tuple[Plan, RuleError | None]:
     """Change a rejected parameter file so that it is accepted.
 
     Returns:
-        The changes; none if the file was accepted as it was. A plan that is not complete is not
-        written.
+        The changes, and the faults of the file as it was; none if it was accepted. A plan that is
+        not complete is not written.
 
     Raises:
         InputError: if the file cannot be read as parameters.
         OutputError: if it cannot be written.
     """
-    plan, _ = _planned(file)
+    plan, error = _planned(file)
     _write(file, plan)
-    return plan
+    return plan, error
 
 
 def _planned(file: Path) -> tuple[Plan, RuleError | None]:

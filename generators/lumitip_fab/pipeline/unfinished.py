@@ -31,6 +31,7 @@ class Unfinished:
             before: its manifest.
         """
         self._out, self._before = out, before
+        self._own = bool(before.files)  # else page and results are somebody else's
         self._begun = False
 
     def announce(self, changed: Iterable[Artefact]) -> None:
@@ -45,7 +46,7 @@ class Unfinished:
             self._before, files=self._before.files | entries, origin=manifest.Origin()
         )
         manifest.write(self._out, self._before)
-        if not self._begun:
+        if self._own and not self._begun:
             self._void_reports()
         self._begun = True
 

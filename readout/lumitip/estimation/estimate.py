@@ -27,8 +27,8 @@ MOST_GAIN = 1.04
 ambient light, or LEDs that were colder at the tare. Frames of other optics than expected stay below
 1.00, with 5 % more light below 1.03 for a cable."""
 FAINT_CONTRAST = 10.0
-"""Least contrast (counts of 255) of an object that the cells hardly see, such as a cable of 3 mm
-between two rows of cells: noise and 1 % of drift of an empty grasp stay below."""
+"""Least contrast (counts of 255) of a cable that the cells hardly see, such as one of 3 mm between
+two rows of cells: noise and 1 % of drift of an empty grasp stay below."""
 BEND = "curvature_per_mm"
 _WEAK_MM, _WEAK_DEG = 1.0, 6.0
 _LEAST_GAIN = 1e-3  # with less light beside an object nothing is known of what it lets through

@@ -247,7 +247,7 @@ class PoseEstimator:
 
     def _of_object(self, read: Floats, usable: NDArray[np.bool_], kind: str | None) -> Frame | None:
         """The frame if it shows an object: by its contrast or, where that is faint, by its likeness
-        to one of the bank."""
+        to a cable of the bank."""
         known = read[usable]
         seen = contrast(known) if known.size >= LEAST_CELLS else 0.0
         if seen < FAINT_CONTRAST:

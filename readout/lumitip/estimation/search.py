@@ -68,9 +68,9 @@ class Search:
         return self.bank(kind).best(frame.light, (frame.scale > 0.0).astype(np.float64))
 
     def resembles(self, kind: str | None, frame: Frame) -> bool:
-        """Whether a faint frame is like that of an object: of a kind, or of an edge or a cable."""
-        kinds = (kind,) if kind else ("edge", "cable")
-        return min(self.start(each, frame)[1] for each in kinds) < _FAINT_LEFT
+        """Whether a faint frame is like that of a cable. No edge is faint: what looks like one is a
+        slope of the light, as after one side has drifted."""
+        return kind in (None, "cable") and self.start("cable", frame)[1] < _FAINT_LEFT
 
     def plain(self, kind: str, pose: Floats, frame: Frame) -> Fit:
         """The fit with the expected optics from a pose of the bank."""

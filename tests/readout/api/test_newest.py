@@ -124,18 +124,23 @@ def test_the_first_frame_of_a_thread_is_of_now(open_feed) -> None:
             got.append(str(error))
 
     def of_a_new_thread(timeout_s: float | None) -> object:
-        thread = threading.Thread(target=first, args=(timeout_s,))
+        thread = threading.Thread(target=first, args=(timeout_s,), daemon=True)
         thread.start()
         thread.join(60.0)
+        assert not thread.is_alive()
         return got[-1]
 
     assert of_a_new_thread(30.0) == of_a_new_thread(None) == 500 % 251, "it is young enough"
     feed.report(LinkEvent("lost", "gone"))
     assert "the connection to feed is lost" in str(of_a_new_thread(0.02))
-    sent = threading.Timer(0.1, lambda: feed.packet(501, t_host=time.monotonic()))
-    sent.start()
-    assert of_a_new_thread(None) == 501 % 251, "it waits for a new one"
-    sent.join()
+    waiting = threading.Thread(target=first, args=(None,), daemon=True)
+    number, seq = len(got), 500
+    waiting.start()
+    while waiting.is_alive() and seq < 1500:  # the first ones may come before it waits
+        seq += 1
+        feed.packet(seq, t_host=time.monotonic())
+        waiting.join(0.05)
+    assert len(got) > number and got[-1] != 500 % 251, "it waits for a new one"
 
 
 def test_the_first_frame_of_a_coroutine_is_of_now(

@@ -47,6 +47,21 @@ def test_an_empty_grasp_that_drifts_shows_nothing(
     assert sum(estimator(f).kind != "none" for f in frames) <= most
 
 
+@pytest.mark.parametrize("direction_deg", range(0, 360, 30))
+@pytest.mark.parametrize("share", [0.045, 0.06, 0.075])
+@pytest.mark.parametrize("kind", [None, "edge", "cable"])
+def test_a_slope_of_the_light_is_no_object(
+    estimator: PoseEstimator, cells: Layout, direction_deg: int, share: float, kind: str | None
+) -> None:
+    """One side has drifted, as after light from outside or a leaning finger."""
+    turn = np.radians(direction_deg)
+    along = cells.x_mm * np.cos(turn) + cells.y_mm * np.sin(turn)
+    values = COUNTS * (1.0 - share * (along - along.min()) / np.ptp(along))
+    values += np.random.default_rng(direction_deg).standard_normal(len(cells))
+    if contrast(values) < MIN_CONTRAST:
+        assert estimator(values, kind).kind == "none"
+
+
 def test_a_covered_finger_stays_covered(estimator: PoseEstimator) -> None:
     faint = 20.0 + np.linspace(0.0, 15.0, 32)
     assert FAINT_CONTRAST < contrast(faint) < MIN_CONTRAST

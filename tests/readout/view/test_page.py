@@ -196,13 +196,12 @@ def test_freeze_holds_the_picture_and_goes_on(serve: Serve, page: Page, wait_for
             assert page.evaluate(drawn) == held
         assert page.evaluate(canvases) == frozen, keys
     page.set_viewport_size({"width": 1200, "height": 760})
-    page.wait_for_timeout(300)
+    wait_for(lambda: page.evaluate(canvases) != frozen)
     page.locator(".grid").click(position={"x": 200, "y": 200})
     assert page.evaluate(drawn) == held
     page.set_viewport_size({"width": 1280, "height": 800})
     page.keyboard.press("c")
-    page.wait_for_timeout(300)
-    assert page.evaluate(canvases) == frozen
+    wait_for(lambda: page.evaluate(canvases) == frozen)
     assert page.evaluate(words) == said
     page.keyboard.press("Space")
     wait_for(lambda: page.evaluate(drawn) > held + 50)
