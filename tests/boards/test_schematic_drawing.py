@@ -151,8 +151,8 @@ def test_each_block_has_its_title(drawn: Drawn) -> None:
         *path,
         buck,
         "Power LED",
-        pins,
         linear,
+        pins,
         *module,
     ]
     simple = _titles(drawn(("five volts", "flange"))[2])
