@@ -84,7 +84,7 @@ class Calibration:
         empty = self.empty if self.empty is not None else np.full_like(reference, 255)
         if (blind := np.flatnonzero(empty <= dark)).size:
             raise CalibrationError(
-                f"{_cells(blind, dark.size)}: not lighter with an empty grasp than in the dark. "
+                f"{named(blind, dark.size)}: not lighter with an empty grasp than in the dark. "
                 "Tare again"
             )
         return Correction(dark, np.float32(255) / (empty - dark))
@@ -103,12 +103,12 @@ class Calibration:
         moving = np.flatnonzero(light.std(axis=0) > _MOST_NOISE)
         if moving.size:
             raise CalibrationError(
-                f"{_cells(moving, mean.size)}: the noise is above {_MOST_NOISE:g} of 255. Hold the "
+                f"{named(moving, mean.size)}: the noise is above {_MOST_NOISE:g} of 255. Hold the "
                 "fingers still and open, away from flickering light"
             )
         if kind == "dark" and (bright := np.flatnonzero(mean > _MOST_DARK)).size:
             raise CalibrationError(
-                f"{_cells(bright, mean.size)}: the light is above {_MOST_DARK:g} of 255. Cover the "
+                f"{named(bright, mean.size)}: the light is above {_MOST_DARK:g} of 255. Cover the "
                 "whole fingertip, or switch the emitter off"
             )
         calibration = replace(self, empty=mean) if kind == "empty" else replace(self, dark=mean)
@@ -118,7 +118,7 @@ class Calibration:
             least = max(_LEAST_SPAN, _LEAST_SHARE * float(np.median(span)))
             if (poor := np.flatnonzero(span < least)).size:
                 raise CalibrationError(
-                    f"{_cells(poor, mean.size)}: the empty grasp is less than {least:.0f} of 255 "
+                    f"{named(poor, mean.size)}: the empty grasp is less than {least:.0f} of 255 "
                     "lighter than the dark. Is the grasp empty? `lumitip doctor` tests each cell"
                 )
         return calibration
@@ -270,7 +270,7 @@ def _path(device_id: str, design_hash: str, folder: Path | None) -> Path:
     return (folder or user_folder() / "calibration") / file_name(device_id, design_hash)
 
 
-def _cells(which: np.ndarray[tuple[int], np.dtype[np.int64]], cells: int) -> str:
+def named(which: np.ndarray[tuple[int], np.dtype[np.int64]], cells: int) -> str:
     """Some of all cells, in a few words: what to do comes after them."""
     if which.size == cells > 1:
         return f"all {cells} cells"

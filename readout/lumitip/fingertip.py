@@ -263,6 +263,8 @@ class Fingertip:
     ) -> Calibration:
         """Measure a reference of every cell and use it from now on; waits up to 10 s a frame.
 
+        A warning is logged if some cells are darker than at the last tare, beside the others.
+
         Args:
             kind: `"empty"`: nothing in the grasp; `"dark"`: all light shut off.
             num_samples: frames to average.

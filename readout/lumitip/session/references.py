@@ -1,15 +1,20 @@
 """`References`: the calibration in use, measured and saved."""
 
+import logging
+
 import numpy as np
 
 from lumitip import arguments
-from lumitip.calibration import Calibration, Kind, checked_kind
+from lumitip.calibration import Calibration, Kind, checked_kind, named
 from lumitip.errors import CalibrationError
 from lumitip.frame import complement
 from lumitip.links.base import Calibrated
 from lumitip.session.hub import Hub
 
+_log = logging.getLogger(__name__)
 _FRAME_S = 10.0  # longest wait for a frame
+_SHADED = 0.9  # of what the lighter cells keep since the last tare
+_LIGHTER = 0.8  # quantile of those: warm LEDs dim all cells alike, an object does not shade most
 
 
 class References:
@@ -60,6 +65,8 @@ class References:
             self._hub.remove(queue)
         light = np.stack([complement(f.raw, f.bits) for f in frames])
         calibration = self._calibration.measured(kind, light)
+        if kind == "empty" and (doubt := _doubt(self._calibration, calibration)):
+            _log.warning("%s: %s", self._hub.link.device_id, doubt)
         if keep:
             calibration.save()
         self.calibration = calibration
@@ -82,3 +89,22 @@ class References:
         if isinstance(link, Calibrated):
             return link.calibration or self._calibration
         return Calibration.kept(link.device_id, link.layout.design_hash, len(link.layout))
+
+
+def _doubt(before: Calibration, now: Calibration) -> str:
+    """A sentence if some cells lost more light since the last tare than the others: a thin thing,
+    or one that lets light through, may be in the grasp. Empty if none did."""
+    if before.empty is None or now.empty is None:
+        return ""
+    dark = now.dark if now.dark is not None else 0.0
+    kept = np.asarray((now.empty - dark) / (before.empty - dark))
+    kept /= np.quantile(kept, _LIGHTER)
+    shaded = np.flatnonzero(kept < _SHADED)
+    if not shaded.size:
+        return ""
+    most = 100.0 * (1.0 - float(kept.min()))
+    return (
+        f"{named(shaded, kept.size)}: up to {most:.0f} % darker than at the last tare, beside "
+        "the others. Is something between the fingers? Take it out and tare again. If nothing is, "
+        "a part has aged or is dirty: `lumitip doctor` tests each cell"
+    )

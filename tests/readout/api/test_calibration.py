@@ -1,5 +1,6 @@
 """Calibration: measured, kept for one device and design, refused for any other; drift."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -162,6 +163,34 @@ def test_taring_calibrates_now_and_the_next_time(tmp_path: Path) -> None:
         pytest.raises(CalibrationError, match="Is the grasp empty"),
     ):
         tip.tare(num_samples=20)
+
+
+@pytest.mark.parametrize(
+    ("brighter", "cells", "said"),
+    [
+        (1.2, [3, 4, 17], "cells 3, 4, 17: up to 17 % darker than at the last tare"),
+        (1.05, [3], ""),  # as a part ages
+        (1.2, range(32), ""),  # as all LEDs dim while they warm
+    ],
+)
+def test_a_tare_over_something_thin_is_doubted(
+    caplog: pytest.LogCaptureFixture, brighter: float, cells: list[int], said: str
+) -> None:
+    with Fingertip.open("twin://empty?rate=1000") as tip:
+        first = tip.tare(num_samples=40, keep=False)
+        assert not caplog.records, "there is nothing to compare with"
+        assert first.empty is not None
+        empty = first.empty.copy()
+        empty[list(cells)] *= brighter
+        tip.calibration = replace(first, empty=empty)
+        second = tip.tare(num_samples=40, keep=False)
+        assert second.empty == pytest.approx(first.empty, rel=0.02), "it is a warning"
+    if not said:
+        assert not caplog.records
+        return
+    (record,) = caplog.records
+    assert said in record.getMessage() and record.levelname == "WARNING"
+    assert "Is something between the fingers? Take it out and tare again" in record.getMessage()
 
 
 def test_the_users_folder_follows_the_platform(monkeypatch: pytest.MonkeyPatch) -> None:
