@@ -234,7 +234,7 @@ def test_firmware_and_program_are_named_with_their_place(preset: str, written: W
         or "folder `firmware` of the outputs" in test
     )
     assert "`lumitip`" in test and "with `pyproject.toml`" in test
-    assert test.index("`pip install '.[ble,serial]'`") < test.index("`lumitip scan`")
+    assert test.index("`pip install '.[readout]'`") < test.index("`lumitip scan`")
     assert re.findall(r"`lumitip (?!scan)\w+`", test) == []
 
 
