@@ -1,6 +1,7 @@
 """Tables and sentences of `lumitip-fab design`, of studies that are made here."""
 
 import json
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -100,6 +101,8 @@ def test_the_most_frequent_reasons_come_first_with_their_counts(
     designs = tuple(Judged((), (), {}, texts, 10.0) for texts in reasons)
     found = Study(task, Options(), _search(designs, designs[0]), ())
     record = summary(found)
+    assert re.fullmatch(r"\d+\.\d+\.\d+\S*, code [0-9a-f]{16}", record["made_with"]["lumitip"])
+    assert {"numpy", "scipy", "pymoo"} < record["made_with"].keys()
     assert record["nearest"] is None
     assert record["refused"][0] == {"reason": "zinc", "designs": 2}
     assert [one["reason"] for one in record["refused"]] == ["zinc", *"fedcba"]

@@ -53,7 +53,7 @@ def code_hash(*parts: str) -> str:
         roots.append(PACKAGE / "mask")
     if "firmware" in parts:
         roots += [Path(lumitip.__file__).parent / "protocol", *firmware_sources()]
-    if {"explore", "solve"} & {*parts}:
+    if {"explore", "solve", "tolerance"} & {*parts}:
         roots += [PACKAGE / "config", *(Path(lumitip.__file__).parent / name for name in JUDGING)]
     return _hash(f for r in roots for f in (_sources(r) if r.is_dir() else [r]))
 
@@ -85,6 +85,13 @@ def tool_version(distribution: str) -> str:
         return f"{distribution} {version(distribution)} on Python {python}"
     except PackageNotFoundError:  # one of two distributions of the same kernel
         return f"no {distribution}"
+
+
+def made_with(room: str, *tools: str) -> dict[str, str]:
+    """What the figures of a study were computed with: this package with the hash of the code, and
+    libraries."""
+    own = f"{version('lumitip')}, code {code_hash(room)[:16]}"
+    return {"lumitip": own} | {tool: tool_version(tool) for tool in tools}
 
 
 @lru_cache

@@ -15,6 +15,7 @@ from lumitip_fab.derive import resolve
 from lumitip_fab.errors import BuildError
 from lumitip_fab.explore.accuracy import Sample, gross, rms
 from lumitip_fab.explore.evaluate import rounded
+from lumitip_fab.pipeline.fingerprint import made_with
 from lumitip_fab.solve import confirm
 from lumitip_fab.solve.goals import Task
 from lumitip_fab.solve.information import Expected, expected
@@ -159,6 +160,7 @@ def _nearest(found: Study) -> dict[str, Any] | None:
 def summary(found: Study) -> dict[str, Any]:
     """The study as plain JSON."""
     return {
+        "made_with": made_with("solve", "numpy", "scipy", "pymoo"),
         "base": found.task.base.sources[0].path.name,
         "fixed": dict(found.task.fixed),
         "well_exposed": str(found.search.reference),

@@ -19,6 +19,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.config.messages import shown_path
 from lumitip_fab.derive.making.tolerances import MODEL_VERSION, fingerprint, spreads
 from lumitip_fab.errors import BuildError, InputError, Problem
+from lumitip_fab.pipeline.fingerprint import made_with
 from lumitip_fab.tolerance.bench import COLUMNS, POSE_SETS, Case, bench
 from lumitip_fab.tolerance.draws import FACTORS, Draws, directions, draw
 from lumitip_fab.tolerance.options import GOOD_PERCENT, MASK_FINGERS, Goals, Options
@@ -99,6 +100,7 @@ def study(
     return {
         "design": config.parameters.name,
         "fingerprint": fingerprint(config, layout, options.mask_conditions),
+        "made_with": made_with("tolerance", "numpy", "scipy"),
         "model_version": MODEL_VERSION,
         "evidence": EVIDENCE,
         "goals": vars(options.goals),
