@@ -126,6 +126,19 @@ def layout(value: object) -> Layout:
     return value
 
 
+def layout_or_path(value: object) -> Layout:
+    """A layout, or the one in the file at a path.
+
+    Raises:
+        LayoutError: if it is neither, or the file cannot be read.
+    """
+    if isinstance(value, str | Path):
+        return Layout.load(value)
+    if not isinstance(value, Layout):
+        raise LayoutError(f"layout is {shown(value)}; a Layout or the path of one is needed")
+    return value
+
+
 def instance(value: object, kind: type[_T], name: str, error: Error = ArgumentError) -> _T:
     """Reject anything but an instance of a class.
 

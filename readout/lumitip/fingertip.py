@@ -22,7 +22,7 @@ from typing import Never, overload
 
 from lumitip import arguments
 from lumitip.calibration import Calibration, Kind
-from lumitip.errors import EndOfRecording, FingertipClosed, LayoutError, LinkError
+from lumitip.errors import EndOfRecording, FingertipClosed, LinkError
 from lumitip.frame import Block, Frame, ended_early, too_late
 from lumitip.layout import Layout
 from lumitip.links import open_link
@@ -33,7 +33,6 @@ from lumitip.session.hub import Hub
 from lumitip.session.queues import FrameQueue
 from lumitip.session.references import References
 from lumitip.session.stats import Stats
-from lumitip.values import shown
 
 _log = logging.getLogger(__name__)
 
@@ -83,13 +82,9 @@ class Fingertip:
                 `ArgumentError` or, for other options, `UnknownOption`, a `TypeError` too.
         """
         check_options(unknown)
-        if isinstance(layout, str | Path):
-            layout = Layout.load(layout)
-        elif layout is not None and not isinstance(layout, Layout):
-            raise LayoutError(f"layout is {shown(layout)}; a Layout or the path of one is needed")
-        hub = Hub(
-            open_link(url, layout, any_design, arguments.seconds(timeout)), any_design, on_event
-        )
+        known = None if layout is None else arguments.layout_or_path(layout)
+        link = open_link(url, known, any_design, arguments.seconds(timeout))
+        hub = Hub(link, any_design, on_event)
         hub.start(timeout)
         try:
             return cls(hub, buffer, calibrated)
@@ -117,15 +112,13 @@ class Fingertip:
         """The newest frame, once it is newer than the last that this thread got from `read`,
         `latest` or `wait_latest`; waits up to `timeout_s` (s), `None` without limit. A thread that
         got none yet takes none older than `timeout_s`, and none from before while the link is cut.
-        For control loops: nothing queues, a slow loop skips frames and never gets an old one
-        behind them. Several threads may call it; each gets the newest.
+        For control loops: nothing queues, a slow loop skips frames. Each thread gets the newest.
 
         Raises:
             LinkTimeout: if no newer frame came in time.
             LinkError: why no more will come.
         """
-        last = self.pass_over(timeout_s)
-        frame = self._handed_out.frame = self._hub.newer(last, timeout_s)
+        frame = self._handed_out.frame = self._hub.newer(self.pass_over(timeout_s), timeout_s)
         return frame
 
     def pass_over(self, max_age_s: float | None) -> Frame | None:
@@ -263,10 +256,9 @@ class Fingertip:
     ) -> Calibration:
         """Measure a reference of every cell and use it from now on; waits up to 10 s a frame.
 
-        A warning is logged if some cells are darker than at the last tare, beside the others.
-
         Args:
-            kind: `"empty"`: nothing in the grasp; `"dark"`: all light shut off.
+            kind: `"empty"`: nothing in the grasp; a warning is logged if some cells are darker than
+                at the last tare, beside the others. `"dark"`: all light shut off.
             num_samples: frames to average.
             keep: save it for the next `open`; not possible with a recording.
 

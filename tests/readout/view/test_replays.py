@@ -135,9 +135,9 @@ def test_player_gives_every_frame_as_it_was(recording: Path, wait_for: WaitFor) 
     player = Player(recording, speed=16.0)
     player.start(lambda arrival: got.append(arrival.content), lambda _: None)
     wait_for(lambda: len(got) == len(expected))
-    for given, was in zip(got, expected, strict=True):
-        assert (given.seq, given.t_wall, given.bits) == (was.seq, was.t_wall, was.bits)
-        np.testing.assert_array_equal(given.raw, was.raw)
+    for asked, was in zip(got, expected, strict=True):
+        assert (asked.seq, asked.t_wall, asked.bits) == (was.seq, was.t_wall, was.bits)
+        np.testing.assert_array_equal(asked.raw, was.raw)
     assert player.status()["playing"] is False
     # At its end it begins again.
     player.control(playing=True)
