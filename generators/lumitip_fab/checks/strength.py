@@ -15,7 +15,15 @@ from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, moments, section
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design, Finger
-from lumitip_fab.design.beam import Beam, Layer, board_blocks, reached_mm, rectangles
+from lumitip_fab.design.beam import (
+    Beam,
+    Layer,
+    behind,
+    board_blocks,
+    joined_mm,
+    reached_mm,
+    rectangles,
+)
 from lumitip_fab.design.frames import backing_bed_to_sensor, mount_to_sensor
 from lumitip_fab.design.strength import Loaded, Loads, loads
 from lumitip_fab.errors import OutputError
@@ -92,9 +100,9 @@ def loaded(
     mesh = solids.read_mesh(outputs / f"backing/{finger.name}_backing.stl")
     mesh = solids.moved(mesh, to_mount @ backing_bed_to_sensor(design.mount, stack))
     h = np.arange(INSIDE_MM, tip_h_mm - INSIDE_MM, STEP_MM)
-    plate = stack.rim_z_mm - stack.back_z_mm + sum(i.pad_mm for i in design.interfaces)
+    thick = stack.rim_z_mm - stack.back_z_mm + sum(i.pad_mm for i in design.interfaces)
     along = design.mount.origin_y_mm + h / math.cos(math.radians(design.mount.tilt_deg))
-    planes = list(zip(h, along, reached_mm(design.mount, plate, h), strict=True))
+    planes = list(zip(h, along, reached_mm(design.mount, thick, h), strict=True))
     cuts = [_borne(section(mesh, z), y, w, design) for z, y, w in planes]
     half = design.mount.block_width_mm / 2
     printed = [(_layer(cuts, limit.backing_mpa, half), slicing.backing.layer_mpa)]
@@ -111,7 +119,18 @@ def loaded(
         glue = np.array([np.ptp(b.bounds[::2]) if not b.is_empty else 0.0 for b in backs])
     face = to_mount @ (0.0, design.closing.contact_y_mm, 0.0, 1.0)
     beam = Beam(h, tip_h_mm, (*(layer for layer, _ in printed), board), float(face[1]))
-    return Loaded(beam, tuple(printed), board, glued, glue)
+    stiff = beam
+    if stack.sunk:
+        joined = joined_mm(design.mount, notch_y, h)
+        held = [_behind(cut, w) for cut, w in zip(cuts, joined, strict=True)]
+        plate = rectangles(limit.board_mpa, half, behind(joined, blocks))
+        stiff = beam.alone(_layer(held, limit.backing_mpa, half), plate)
+    return Loaded(beam, stiff, tuple(printed), board, glued, glue)
+
+
+def _behind(cut: Any, low_mm: float) -> Any:
+    """A section without what lies before a w."""
+    return shapely.clip_by_rect(cut, -_FAR_MM, max(low_mm, -_FAR_MM), _FAR_MM, _FAR_MM)
 
 
 def _layer(cuts: list[Any], modulus_mpa: float, half_mm: float) -> Layer:

@@ -135,6 +135,26 @@ def board_blocks(
     return ((np.zeros_like(h_mm), half, front, back),)
 
 
+def joined_mm(mount: Mount, notch_y_mm: float, h_mm: Vectors) -> Vectors:
+    """Least w that stiffens each section: beyond the wire notch, stress spreads forward from the
+    front of the coupling's block at 45°, and what lies before is not stretched yet.
+
+    Args:
+        mount: for block and lean.
+        notch_y_mm: end of the notch.
+        h_mm: heights of the sections.
+    """
+    beyond = mount.origin_y_mm + h_mm / math.cos(math.radians(mount.tilt_deg)) - notch_y_mm
+    return np.where(beyond > 0.0, mount.block_front_w_mm - beyond, -np.inf)
+
+
+def behind(low_mm: Vectors, blocks: Sequence[Block]) -> tuple[Block, ...]:
+    """Rectangles without what lies before a w in each section."""
+    return tuple(
+        (inner, outer, np.maximum(front, low_mm), back) for inner, outer, front, back in blocks
+    )
+
+
 FLARE_SPREAD, RAMP_SPREAD = 0.27, 0.55
 """How fast stress spreads from the plate into the flare, and from there into the ramp that rises at
 45°: what lies farther back bears nothing. By finite elements, see

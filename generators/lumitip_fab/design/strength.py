@@ -95,6 +95,8 @@ class Loaded:
     """A finger as a beam, with what its layers are."""
 
     beam: Beam
+    stiff: Beam
+    """The same without what is not stretched yet where the block meets the plate: for the bend."""
     printed: tuple[tuple[Layer, float], ...]
     """Printed layers, and their strength from layer to layer (MPa)."""
     board: Layer
@@ -131,7 +133,8 @@ def loads(of: Loaded, strength: Strength, cells_mm: Vectors, depth_mm: float) ->
     )
     strain = beam.tension_mpa(of.board) * force / of.board.modulus_mpa
     cells_h = cells_mm[:, 1]
-    back, lean = beam.bent(beam.stiffness_nmm2, np.append(cells_h, beam.tip_h_mm))
+    stiff = of.stiff.stiffness_nmm2
+    back, lean = of.stiff.bent(stiff, np.append(cells_h, beam.tip_h_mm))
     side, _ = beam.bent(beam.side_stiffness_nmm2, np.append(cells_h, beam.tip_h_mm))
     turn = beam.summed(aside.twist, cells_h)
     # Fingers that bend and twist alike stay mirror images: a path crosses each mask off its middle

@@ -26,7 +26,16 @@ from lumitip_fab.design import (
     Stack,
     Tip,
 )
-from lumitip_fab.design.beam import Beam, Block, Vectors, board_blocks, reached_mm, rectangles
+from lumitip_fab.design.beam import (
+    Beam,
+    Block,
+    Vectors,
+    behind,
+    board_blocks,
+    joined_mm,
+    reached_mm,
+    rectangles,
+)
 from lumitip_fab.design.seat import designed_foot, designed_seat, pull_n
 from lumitip_fab.design.strength import Loaded, Strength, loads
 
@@ -161,7 +170,8 @@ def _loaded(body: Body, limit: Strength) -> Loaded:
         width = np.where(at.y < interface.box.y_max_mm, 2 * interface.box.x_max_mm, 0.0)
         strong = body.slicing.backing.layer_mpa, body.slicing.rigid.layer_mpa
         printed = (plate, strong[0]), (rigid, strong[1])
-        return Loaded(Beam(h, tip_h, (plate, rigid, board), tip_w), printed, board, plate, width)
+        beam = Beam(h, tip_h, (plate, rigid, board), tip_w)
+        return Loaded(beam, beam, printed, board, plate, width)
     held = at.notch == 0  # the plate's legs beside the notch bear nothing
     inside = (at.y > pocket.y_min_mm) & (at.y < pocket.y_max_mm)
     rims = np.where(inside, pocket.x_max_mm, at.notch)
@@ -172,7 +182,12 @@ def _loaded(body: Body, limit: Strength) -> Loaded:
     whole = rectangles(limit.backing_mpa, core, blocks, taken)
     width = 2 * (box.x_max_mm - at.notch) * (board.area_mm2 > 0)
     strength = ((whole, body.slicing.backing.layer_mpa),)
-    return Loaded(Beam(h, tip_h, (whole, board), tip_w), strength, board, board, width)
+    beam, joined = Beam(h, tip_h, (whole, board), tip_w), joined_mm(mount, notch_y, h)
+    stiff = (
+        rectangles(limit.backing_mpa, core, behind(joined, blocks), taken),
+        rectangles(limit.board_mpa, core, behind(joined, cut)),
+    )
+    return Loaded(beam, beam.alone(*stiff), strength, board, board, width)
 
 
 class _Planes:
