@@ -59,9 +59,10 @@ def test_without_the_extra_one_line_names_it(fresh: Run, design_dir: Path) -> No
 def test_init_copies_the_design_folder_and_overwrites_nothing(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    target = tmp_path / "[red]mine :smile:"
+    target = tmp_path / ("long " * 20) / "[red]mine :smile:"  # wider than a terminal
     assert main(["init", str(target)]) == 0
     said = capsys.readouterr().out
+    assert said.count("\n") == 1
     assert said.startswith(f"{target}: edit fingertip.toml")
     command = shlex.split(said.partition("then: ")[2])
     assert command[2] == str(target / "fingertip.toml"), "a name with spaces is one word"

@@ -26,7 +26,8 @@ def init(options: argparse.Namespace) -> int:
     if not options.quiet:
         OUT.print(
             f"{target}: edit fingertip.toml, then: lumitip-fab build "
-            f"{quote(str(target / 'fingertip.toml'))} --out outputs"
+            f"{quote(str(target / 'fingertip.toml'))} --out outputs",
+            soft_wrap=True,
         )
     return 0
 
