@@ -95,7 +95,8 @@ def test_what_no_shape_explains_is_said_in_words(layout: Layout) -> None:
     shown = described(estimate, 20.0)
     assert shown["words"][0].startswith("misfit: no edge, cable or corner explains these cells")
     assert len(shown["words"]) == len(estimate.flags)
-    assert set(WORDS) == {"misfit", "weak", "astray", "unfinished", "ambiguous", "dead"}
+    flags = {"misfit", "weak", "astray", "unfinished", "bright", "ambiguous", "dead"}
+    assert set(WORDS) == flags
 
 
 def test_cells_that_may_be_dead_are_named(layout: Layout) -> None:
