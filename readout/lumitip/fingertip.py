@@ -118,10 +118,10 @@ class Fingertip:
             LinkTimeout: if no newer frame came in time.
             LinkError: why no more will come.
         """
-        frame = self._handed_out.frame = self._hub.newer(self.pass_over(timeout_s), timeout_s)
+        frame = self._handed_out.frame = self._hub.newer(self._pass_over(timeout_s), timeout_s)
         return frame
 
-    def pass_over(self, max_age_s: float | None) -> Frame | None:
+    def _pass_over(self, max_age_s: float | None) -> Frame | None:
         """Count the newest frame as handed out if this thread got none yet and it is older than
         `max_age_s` (s), or the link is cut. Returns the last frame that was handed out."""
         last: Frame | None = getattr(self._handed_out, "frame", None)

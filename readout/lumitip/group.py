@@ -151,7 +151,7 @@ class FingertipGroup:
         within_s = seconds(timeout_s, "timeout_s")
         until = math.inf if within_s is None else time.monotonic() + within_s
         for tip in self.tips.values():  # before the wait for one of them takes the time of others
-            tip.pass_over(within_s)
+            tip._pass_over(within_s)
         frames = {}
         for name, tip in self.tips.items():
             left_s = None if within_s is None else max(0.0, until - time.monotonic())

@@ -65,7 +65,7 @@ class Memory:
         self._known[module] = {
             "key": self._key(module, design, names),
             "fields": names,
-            "measurements": [entry(m) for m in measurements],
+            "measurements": [_entry(m) for m in measurements],
         }
         try:
             write_file(self._path, json.dumps(self._known, allow_nan=False).encode())
@@ -90,7 +90,7 @@ def reads(module: str) -> tuple[str, ...]:
     raise LookupError(f"lumitip_fab.checks.{module} does not say what it READS")
 
 
-def entry(m: Measurement) -> dict[str, Any]:
+def _entry(m: Measurement) -> dict[str, Any]:
     """A measurement as JSON has it: a figure that is not finite is a word, like `"inf"`."""
     figures = {name: getattr(m, name) for name in _FIGURES}
     return asdict(m) | {n: v if math.isfinite(v) else str(v) for n, v in figures.items()}

@@ -256,6 +256,16 @@ class Packages:
     """Between the strings of LEDs and ground; none where they are always on."""
     switch_name: str
 
+    @property
+    def unmarked(self) -> dict[str, Led | Photodetector]:
+        """By its kind, each part whose marked terminal is neither measured nor read from a
+        datasheet: one of them is tried before boards are ordered."""
+        parts: dict[str, Led | Photodetector] = {
+            "LED": self.led,
+            "photodetector": self.photodetector,
+        }
+        return {kind: part for kind, part in parts.items() if not part.mark_is_known}
+
     def at_cells(self, finger: Finger) -> Led | Photodetector:
         """What emits or detects light on a finger."""
         return self.led if finger.cells_hold.kind == "led" else self.photodetector

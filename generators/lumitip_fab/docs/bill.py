@@ -117,12 +117,11 @@ TESTED = 2
 def loose_parts(design: Design) -> Iterator[Bought]:
     """LEDs and photodetectors for the test of their marked terminals: a PCB fab that places those
     of the boards sends none."""
-    packages, where = design.packages, "test of the marked terminals, before the boards"
-    for kind, part in (("LED", packages.led), ("photodetector", packages.photodetector)):
-        if not part.mark_is_known:
-            item, number = f"{kind} {part.order_number}, loose", part.order_number
-            each = design.purchase.part_each(number)
-            yield Bought("supplies", item, part.manufacturer, number, where, TESTED, each)
+    where = "test of the marked terminals, before the boards"
+    for kind, part in design.packages.unmarked.items():
+        item, number = f"{kind} {part.order_number}, loose", part.order_number
+        each = design.purchase.part_each(number)
+        yield Bought("supplies", item, part.manufacturer, number, where, TESTED, each)
 
 
 def _minutes(facts: Mapping[str, float], filament: Filament, design: Design) -> int:

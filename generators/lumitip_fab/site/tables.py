@@ -152,10 +152,8 @@ def figure_table(figures: Iterable[Figure]) -> str:
 
 
 def unmarked(folder: Folder) -> list[str]:
-    """Parts whose marked end is neither measured nor read from a data sheet."""
-    packages = folder.design.packages
-    parts = {"an LED": packages.led, "a photodetector": packages.photodetector}
-    return [name for name, part in parts.items() if not part.mark_is_known]
+    """Parts whose marked end nobody has measured, in words."""
+    return ["an LED" if kind == "LED" else f"a {kind}" for kind in folder.design.packages.unmarked]
 
 
 def order_table(folder: Folder, targets: Targets) -> str:

@@ -253,9 +253,10 @@ class PoseEstimator:
         if seen < FAINT_CONTRAST:
             return None
         frame = self.frame(read, usable)
-        faint = seen < MIN_CONTRAST
-        is_object = not faint or (not is_covered(known) and self._search.resembles(kind, frame))
-        return frame if is_object else None
+        if seen >= MIN_CONTRAST:
+            return frame
+        faint = not is_covered(known) and self._search.resembles(kind, frame)
+        return frame if faint else None
 
     def _found(self, frame: Frame, kind: str | None) -> tuple[str, Fit]:
         search, last = self._search, self._last

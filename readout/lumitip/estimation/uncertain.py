@@ -1,4 +1,4 @@
-"""Covariance of a pose: by the noise and the optics of its fit, and by cells off their places."""
+"""Covariance of a pose: by the noise and the optics of its fit, and by what moves a shadow."""
 
 import numpy as np
 
