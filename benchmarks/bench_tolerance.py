@@ -19,7 +19,7 @@ from lumitip_fab.derive.making.tolerances import spreads
 from lumitip_fab.tolerance.bench import COLUMNS, bench
 from lumitip_fab.tolerance.draws import draw
 from lumitip_fab.tolerance.options import Options
-from lumitip_fab.tolerance.study import case_of, on_cores
+from lumitip_fab.tolerance.study import cases_of, on_cores
 
 FINGERS_A_MINUTE = 500
 CORES = 2
@@ -32,9 +32,9 @@ def main(fingers: int) -> int:
     """Print the figures; the exit code."""
     goals, resolved, options = Goals(), resolve(load(PUBLISHED)), Options()
     config, layout = resolved.config, resolved.design.layout
-    case = case_of(config, layout, options)
+    (case,) = cases = cases_of(config, layout, options)
     take = partial(draw, config.catalogue.tolerances, spreads(config), len(layout))
-    with on_cores(case, CORES) as errors:
+    with on_cores(cases, CORES) as errors:
         errors(take(40, 1), COLUMNS)  # processes start, and prepare their tables
         for columns in (COLUMNS, COLUMNS[1:2]):
             drawn, begin = take(fingers, 0), time.perf_counter()

@@ -9,10 +9,10 @@ from markdown_text import code, prose, table
 
 PARSERS = {"lumitip": readout_parser, "lumitip-fab": fab_parser}
 _ABOUT = {
-    "lumitip": "The robot's side. It exits with 0; 2 if the input cannot be used; 130 after "
-    "Ctrl-C.",
-    "lumitip-fab": "The maker's side. It exits with 0; 1 if a check or a build failed; 2 if the "
-    "input is rejected.",
+    "lumitip": "The robot's side. It exits with 0; 1 if what it tests is not good, or what it "
+    "reads is cut short; 2 if the input cannot be used; 130 after Ctrl-C.",
+    "lumitip-fab": "The maker's side. It exits with 0; 1 if a check or a build failed, or what "
+    "was searched or measured does not fit; 2 if the input is rejected.",
 }
 
 

@@ -14,7 +14,8 @@ _INTRO = """# Parameters
 
 Every field of a parameter file, from `design/schema.json`, by which editors complete it. A value of
 `"auto"` follows from the others; `lumitip-fab spec FILE` lists what was chosen and why. The
-defaults are those of the preset `published.toml`; `design/fingertip.toml` differs from it in some.
+defaults are those of a file that does not write the field; presets write some that differ, such as
+the published pull-ups in `published.toml`.
 [How to change the design](../design.md) says how to write a file of your own.
 
 """
@@ -74,7 +75,17 @@ def allowed(shape: dict[str, Any]) -> str:
         inner = shape.get("prefixItems") or [shape["items"]]
         each = ", ".join(dict.fromkeys(allowed(item) for item in inner))
         return f"list{_bounds(shape, 'minItems', 'maxItems')} of: {each}"
+    if shape["type"] == "string":
+        return _TYPES["string"] + _characters(shape)
     return _TYPES[shape["type"]] + _bounds(shape, "minimum", "maximum")
+
+
+def _characters(shape: dict[str, Any]) -> str:
+    """Length and pattern of a text, in brackets; empty if any text is allowed."""
+    least, most = shape.get("minLength", 0), shape.get("maxLength")
+    words = [f"{least} to {most} characters" if least else f"up to {most} characters"] * bool(most)
+    words += [f"pattern {code(shape['pattern'])}"] if "pattern" in shape else []
+    return f" ({', '.join(words)})" if words else ""
 
 
 def _bounds(shape: dict[str, Any], least: str, most: str) -> str:

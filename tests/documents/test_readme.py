@@ -73,6 +73,7 @@ def test_the_figures_of_poses_are_those_of_the_table() -> None:
         assert row
         mm, deg = float(row[1]), float(row[2])
         assert re.search(rf"{mm:.2f} mm and {deg:.1f}°(?: rms)? for an? {kind}", TEXT), kind
+        assert f"{kind}s to {mm:.2f} mm" in (ROOT / "docs/index.md").read_text("utf-8"), kind
 
 
 def test_the_price_is_that_of_the_default_design() -> None:

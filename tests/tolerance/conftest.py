@@ -9,7 +9,7 @@ from lumitip_fab.derive import resolve
 from lumitip_fab.derive.auto.resolve import Resolved
 from lumitip_fab.tolerance.bench import Bench
 from lumitip_fab.tolerance.options import Options
-from lumitip_fab.tolerance.study import case_of
+from lumitip_fab.tolerance.study import cases_of
 
 
 @pytest.fixture(scope="session")
@@ -19,4 +19,4 @@ def design(design_dir: Path) -> Resolved:
 
 @pytest.fixture(scope="session")
 def tried(design: Resolved) -> Bench:
-    return Bench(case_of(design.config, design.design.layout, Options(poses=12)))
+    return Bench(cases_of(design.config, design.design.layout, Options(poses=12))[0])

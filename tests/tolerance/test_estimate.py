@@ -86,4 +86,4 @@ def test_a_finger_with_a_gross_error_is_never_good(design: Resolved, tried: Benc
     rows = tried.errors(far, COLUMNS[1:2])[0]
     assert rows[0, 4] > 0.0
     assert rows[1, 4] == 0.0
-    assert good(rows, Goals(2.0, 10.0)).mean() == 0.5
+    assert good(rows, Goals.of_both(2.0, 10.0)).mean() == 0.5

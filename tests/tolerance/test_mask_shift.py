@@ -13,12 +13,12 @@ from lumitip_fab.derive.making.tolerances import fingerprint, known_mask_shift, 
 from lumitip_fab.design.making import MaskShift
 from lumitip_fab.docs.wrapping import wrapping_steps
 from lumitip_fab.tolerance.draws import FACTORS, Draws, directions, draw
-from lumitip_fab.tolerance.options import GOOD_PERCENT, Goals, Options
+from lumitip_fab.tolerance.options import GOOD_PERCENT, Goals, Grasp, Options
 from lumitip_fab.tolerance.report import mask_line
 from lumitip_fab.tolerance.study import (
     MASK_STEP_MM,
     MOST_SHIFT_MM,
-    case_of,
+    cases_of,
     mask_allowance,
     on_cores,
     shifted_good,
@@ -42,7 +42,7 @@ def test_the_figure_of_the_catalogue_is_what_a_study_finds(design: Resolved) -> 
     ways = directions(table, drawn, options.seed)
     assert design.design.mask.shift is not None
     most_mm = design.design.mask.shift.most_mm
-    with on_cores(case_of(config, layout, options), None) as errors:
+    with on_cores(cases_of(config, layout, options), None) as errors:
         good = [
             100.0 * shifted_good(errors, drawn, ways, options.goals, mm).mean()
             for mm in (most_mm, most_mm + MASK_STEP_MM)
@@ -72,7 +72,7 @@ def test_the_shift_is_the_largest_up_to_which_all_hold(
         rows[0, : round(1000 * (1 - share)), 4] = 1.0
         return rows
 
-    found, own = mask_allowance(errors, drawn, ways, Goals())
+    found, own = mask_allowance(errors, drawn, ways, Goals.of_both())
     assert found == expected
     assert own.mean() == pytest.approx(good[round((expected or 0.0) / MASK_STEP_MM)])
 
@@ -93,7 +93,7 @@ def test_masks_are_shifted_by_the_whole_length_in_any_direction(
         tried.append(draws["mask_shift"].reshape(-1, 2))
         return np.zeros((1, 4000, 5))
 
-    assert shifted_good(errors, drawn, directions(table, drawn, 0), Goals(), 0.4).all()
+    assert shifted_good(errors, drawn, directions(table, drawn, 0), Goals.of_both(), 0.4).all()
     (shifts,) = tried
     assert np.linalg.norm(shifts, axis=1) == pytest.approx(0.4)
     sectors = np.histogram(np.arctan2(shifts[:, 1], shifts[:, 0]), 8, (-np.pi, np.pi))[0]
@@ -126,7 +126,12 @@ def test_goals_poses_and_the_version_of_the_model_change_the_fingerprint(
     design: Resolved, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     config, layout = design.config, design.design.layout
-    changed = (Options(Goals(0.5)), Options(poses=8), Options(seed=1), Options(gap_mm=4.0))
+    changed = (
+        Options(Goals.of_both(0.5)),
+        Options(poses=8),
+        Options(seed=1),
+        Options(grasps=(Grasp(4.0),)),
+    )
     of = partial(fingerprint, config, layout)
     found = {of(options.mask_conditions) for options in (Options(), *changed)}
     assert len(found) == 5

@@ -21,7 +21,7 @@ from lumitip_fab.tolerance.draws import FACTORS, directions, draw
 from lumitip_fab.tolerance.options import Goals, Options
 from lumitip_fab.tolerance.study import (
     MOST_SHIFT_MM,
-    case_of,
+    cases_of,
     draws_of,
     mask_allowance,
     sensitivities,
@@ -30,6 +30,7 @@ from lumitip_fab.tolerance.study import (
 from lumitip_fab.tolerance.yields import design_effect, good, interval, wilson
 
 FEW = Options(fingers=16, poses=4, seed=2)
+WIDE = Goals.of_both(1.0, 5.0)
 COMMAND = ("--fingers", "16", "--poses", "4", "--seed", "2")
 
 
@@ -91,7 +92,7 @@ def test_the_yield_falls_when_a_tolerance_grows_or_the_goals_tighten(
         wider = {**spread, "mask_shift": times * spread["mask_shift"]}
         rows = tried.errors(draw(table, wider, 32, 20, 0), COLUMNS[1:2])[0]
         tight, own, wide = (
-            good(rows, goals).mean() for goals in (Goals(0.2, 1.0), Goals(), Goals(1.0, 5.0))
+            good(rows, goals).mean() for goals in (Goals.of_both(0.2, 1.0), Goals.of_both(), WIDE)
         )
         assert tight <= own <= wide
         yields.append(own)
@@ -108,7 +109,7 @@ def test_the_mask_may_be_less_off_where_the_goals_are_tighter(
     ways = directions(table, drawn, 0)
     wide, default, narrow = (
         mask_allowance(tried.errors, drawn, ways, goals)[0]
-        for goals in (Goals(1.0, 5.0), Goals(), Goals(0.01, 0.05))
+        for goals in (WIDE, Goals.of_both(), Goals.of_both(0.01, 0.05))
     )
     assert narrow is None
     assert wide is not None and default is not None
@@ -200,7 +201,9 @@ def test_indices_are_printed_with_their_draws_and_deviation(
 def test_the_shift_of_the_masks_saturates(design: Resolved) -> None:
     drawn = draw(design.config.catalogue.tolerances, dict.fromkeys(FACTORS, 1.0), 32, 4, 0)
     exact = {**drawn, "gap": 0.0 * drawn["gap"]}
-    assert mask_allowance(linear, exact, np.ones((4, 2, 2)), Goals(9, 9))[0] == MOST_SHIFT_MM
+    assert (
+        mask_allowance(linear, exact, np.ones((4, 2, 2)), Goals.of_both(9, 9))[0] == MOST_SHIFT_MM
+    )
     assert MOST_SHIFT_MM == 1.5
 
 
@@ -232,10 +235,10 @@ def test_cells_on_one_line_are_rejected(design: Resolved) -> None:
     layout = design.design.layout
     line = replace(layout, y_mm=np.zeros(len(layout)))
     with pytest.raises(InputError, match=r"grid\.columns is \[5, 4.*all cells lie on one line"):
-        case_of(design.config, line, FEW)
+        cases_of(design.config, line, FEW)
 
 
 def test_compliant_fingers_are_rejected(design_dir: Path) -> None:
     flex = load(design_dir / "presets" / "flex.toml")
     with pytest.raises(InputError, match=r'backing\.variant is "flex"; .* allows "rigid" alone'):
-        case_of(flex, derive(flex).layout, FEW)
+        cases_of(flex, derive(flex).layout, FEW)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
+from lumitip_fab.cli.readings import lost, readings
 from lumitip_fab.cli.screen import ERR, OUT
 from lumitip_fab.cli.steps import STEPS
 from lumitip_fab.pipeline import build as pipeline
@@ -62,6 +63,7 @@ def run(options: argparse.Namespace) -> int:
         TextColumn("left"),
     )
     silent = options.quiet or options.json
+    before = readings(options.out)
     with Progress(*columns, console=ERR, disable=silent, transient=True) as bar:
         shown = bar.add_task("reading", total=None)
 
@@ -69,6 +71,8 @@ def run(options: argparse.Namespace) -> int:
             bar.update(shown, description=name, completed=done, total=total)
 
         report = build(options.file, options.out, progress, options.only)
+    for line in lost(before, options.file, options.out):
+        ERR.print(line, soft_wrap=True)
     if options.json:
         summary = {
             "design_hash": report.origin.design_hash,

@@ -2,20 +2,24 @@
 
 import argparse
 import json
+import math
 from contextlib import nullcontext
+from pathlib import Path
 
 from lumitip_fab.cli.screen import ERR, OUT
 from lumitip_fab.config.load import load
+from lumitip_fab.config.messages import shown_path
 from lumitip_fab.derive import resolve
+from lumitip_fab.errors import InputError, Problem
+from lumitip_fab.solve.goals import Targets, read_goals
 from lumitip_fab.tolerance import report
-from lumitip_fab.tolerance.options import Goals, Options
+from lumitip_fab.tolerance.options import Goals, Grasp, Options
 from lumitip_fab.tolerance.study import study
 
 
 def run(options: argparse.Namespace) -> int:
     """Run a study of tolerances."""
-    goals = Goals(options.position, options.angle)
-    asked = Options(goals, options.gap, options.fingers, options.poses, options.seed)
+    asked = _asked(options)
     if options.out:
         report.prepare(options.out)
     resolved = resolve(load(options.file))
@@ -30,3 +34,34 @@ def run(options: argparse.Namespace) -> int:
         if written:
             OUT.print("wrote " + ", ".join(map(str, written)), soft_wrap=True)
     return 0
+
+
+def _asked(options: argparse.Namespace) -> Options:
+    """Goals, grasps and sizes of the command.
+
+    Raises:
+        InputError: if one is out of its limits, or the goals are in a file and in options.
+    """
+    sizes = {"fingers": options.fingers, "poses": options.poses, "seed": options.seed}
+    own = {"position": options.position, "angle": options.angle, "gap": options.gap}
+    written = {name: value for name, value in own.items() if value is not None}
+    if options.goals is None:
+        gap = {"gap_mm": written.pop("gap")} if "gap" in written else {}
+        names = {"position": "position_mm", "angle": "angle_deg"}
+        goals = Goals.of_both(**{names[name]: value for name, value in written.items()})
+        return Options(goals, (Grasp(**gap),), **sizes)
+    if written:
+        text = "is in the goals file too: --goals allows no other goal or gap. Remove one of them."
+        raise InputError([Problem(f"--{name}", 0, "", text) for name in written])
+    return _of_file(options.goals, read_goals(options.goals).targets, sizes)
+
+
+def _of_file(file: Path, targets: Targets, sizes: dict[str, int]) -> Options:
+    """Goals of a file; edges are tried in each of its gaps, cables where they have a goal."""
+    figures = ("edge_mm", "edge_deg", "cable_mm", "cable_deg")
+    goals = Goals(*(targets.errors.get(name, math.inf) for name in figures))
+    cables = targets.cables_mm if min(goals.cable_mm, goals.cable_deg) < math.inf else ()
+    grasps = tuple(
+        Grasp(gap_mm, tuple(d for d in cables if d <= gap_mm)) for gap_mm in targets.gaps_mm
+    )
+    return Options(goals, grasps, file=shown_path(file), **sizes)

@@ -27,6 +27,7 @@ LEARNING = 40
 """Edges by which a finger calibrates itself."""
 AGREED = (0.05, 0.2)
 """Difference of two estimates of one frame that counts as none (mm, degrees)."""
+_CASES = 16  # whose tables are kept in each process
 _REACH = 0.35  # of the grid's smaller extent: how far from its middle lines lie
 
 
@@ -37,8 +38,10 @@ class Case:
     layout: Layout
     model: Model
     poses: int
-    """Of edges, and as many of cables, in each set."""
+    """Of edges, and as many of cables of each diameter, in each set."""
     seed: int
+    cables_mm: tuple[float, ...] = (DIAMETER_MM,)
+    """Diameters of the cables (mm)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +68,13 @@ class Bench:
         self._rays = _rays(case)
         self.estimates = _estimates(case)
         self._empty = Twin(case.layout, case.model).empty
-        self.lines = {kind: lines(case, kind, case.poses, number) for kind in KINDS}
+        self.lines = {
+            "edge": lines(case, "edge", case.poses, number),
+            **{
+                f"cable {diameter_mm:g} mm": lines(case, "cable", case.poses, number, diameter_mm)
+                for diameter_mm in case.cables_mm
+            },
+        }
         """True poses."""
         self.use = {"use": lines(case, "edge", LEARNING, POSE_SETS + number)}
         """Edges of self-calibration."""
@@ -79,6 +88,7 @@ class Bench:
     def errors(self, draws: Draws, columns: tuple[str, ...] = COLUMNS) -> Floats:
         """Errors of fingers over their poses, shape `(columns, fingers, 5)`: rms of offset (mm)
         and angle (degrees) of edges, then of cables, and the share of the poses with a gross error.
+        Where no cable is tried, its errors are NaN.
 
         Args:
             draws: deviations of the fingers.
@@ -91,17 +101,14 @@ class Bench:
             known = self.estimates.learned(frames["use"].tared, self.use["use"])
         rows = []
         for column in columns:
-            missed = [
-                self.estimates.errors(
-                    frames[kind].raw if column == COLUMNS[0] else frames[kind].tared,
-                    self.lines[kind],
-                    known if column == COLUMNS[2] else nothing,
-                )
-                for kind in KINDS
-            ]
-            rms = [np.sqrt((one**2).mean(axis=1)) for one in missed]
-            share = np.mean([gross(one).mean(axis=1) for one in missed], axis=0)
-            rows.append(np.column_stack([*rms, share]))
+            missed: dict[str, list[Floats]] = {kind: [] for kind in KINDS}
+            for name, of in self.lines.items():
+                values = frames[name].raw if column == COLUMNS[0] else frames[name].tared
+                learned = known if column == COLUMNS[2] else nothing
+                missed[of.kind].append(self.estimates.errors(values, of, learned))
+            rms = [_rms(missed[kind], len(nothing.gains)) for kind in KINDS]
+            every = np.concatenate([one for each in missed.values() for one in each], axis=1)
+            rows.append(np.column_stack([*rms, gross(every).mean(axis=1)]))
         return np.array(rows)
 
     def compared(self, draws: Draws) -> dict[str, float]:
@@ -114,8 +121,8 @@ class Bench:
         """
         frames, known = self.frames(draws, self.lines), self.estimates.nothing_known
         agreed, flagged, unseen = [], [], []
-        for kind, of in self.lines.items():
-            tared = frames[kind].tared
+        for name, of in self.lines.items():
+            tared = frames[name].tared
             own = self.estimates.errors(tared, of, known(len(tared)))
             whole, ambiguous = self.estimates.searched(tared, of)
             agreed.append((np.abs(own - whole) <= AGREED).all(axis=2) & ~ambiguous)
@@ -151,27 +158,53 @@ class Bench:
         return values
 
 
-def lines(case: Case, kind: str, count: int, draw: int = 0) -> Lines:
+def _rms(missed: list[Floats], fingers: int) -> Floats:
+    """Rms over all poses of offset (mm) and angle (degrees), shape `(fingers, 2)`; NaN if none."""
+    if not missed:
+        return np.full((fingers, 2), np.nan)
+    found: Floats = np.sqrt((np.concatenate(missed, axis=1) ** 2).mean(axis=1))
+    return found
+
+
+def lines(
+    case: Case, kind: str, count: int, draw: int = 0, diameter_mm: float = DIAMETER_MM
+) -> Lines:
     """Lines in any direction over the middle of the grid, evenly spread at places that the seed
     shifts."""
     reach_mm = _REACH * min(float(np.ptp(case.layout.x_mm)), float(np.ptp(case.layout.y_mm)))
     shift = generator(case.seed, Stream.POSES, KINDS.index(kind), draw).random(2)
     even = (qmc.Halton(2, scramble=False).random(count) + shift) % 1.0
     places = (2.0 * even - 1.0) * (np.pi / 2.0, reach_mm)
-    return Lines(kind, places, DIAMETER_MM)
+    return Lines(kind, places, diameter_mm)
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=_CASES)
 def _rays(case: Case) -> Rays:
     return Rays(case.layout, case.model)
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=_CASES)
 def _estimates(case: Case) -> Estimates:
     return Estimates(case.layout, case.model)
 
 
-@lru_cache(maxsize=2 * POSE_SETS)
+@lru_cache(maxsize=_CASES * POSE_SETS)
 def bench(case: Case, number: int = 0) -> Bench:
     """The bench of a case and a set of poses, one in each process."""
     return Bench(case, number)
+
+
+def errors_over(
+    cases: tuple[Case, ...], number: int, draws: Draws, columns: tuple[str, ...]
+) -> Floats:
+    """Errors of fingers over the poses of all cases, see `Bench.errors`."""
+    found = np.array([bench(case, number).errors(draws, columns) for case in cases])
+    edges, cables = np.ones(len(cases)), np.array([float(len(case.cables_mm)) for case in cases])
+    mean_square = [
+        np.average(np.nan_to_num(found[..., some]) ** 2, axis=0, weights=counts)
+        if counts.any()
+        else np.full_like(found[0, ..., some], np.nan)
+        for some, counts in ((slice(2), edges), (slice(2, 4), cables))
+    ]
+    share = np.average(found[..., 4:], axis=0, weights=edges + cables)
+    return np.concatenate([*map(np.sqrt, mean_square), share], axis=-1)

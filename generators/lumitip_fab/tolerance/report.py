@@ -35,11 +35,8 @@ _UNITS = {"mm": " mm", "deg": "°", "share": " %"}
 
 def print_tables(study: dict[str, Any], console: Console) -> None:
     """Print yield, errors, and the tolerances that matter most."""
-    goals = study["goals"]
     table = Table(
-        title=f"{study['fingers']} built pairs of fingers, {study['poses']['edge']} edges and "
-        f"{study['poses']['cable']} cables each, gap {study['gap_mm']:g} mm; "
-        f"{study['evidence']}",
+        title=f"{study['fingers']} built pairs of fingers, {_tried(study)}; {study['evidence']}",
         caption=f"Fingers are tried at {study['poses']['sets']} sets of poses in turn; intervals "
         "are as wide as differences between these make them.",
     )
@@ -50,6 +47,8 @@ def print_tables(study: dict[str, Any], console: Console) -> None:
         low, high = column["yield_95"]
         edge, cable = (
             f"{column[f'{kind}_mm']['95']:.2f}, {column[f'{kind}_deg']['95']:.1f}"
+            if f"{kind}_mm" in column
+            else "not tried"
             for kind in ("edge", "cable")
         )
         interval = f"{100 * low:.0f} to {100 * high:.0f} %"
@@ -57,8 +56,8 @@ def print_tables(study: dict[str, Any], console: Console) -> None:
         table.add_row(name, good, interval, gross, edge, cable)
     console.print(table)
     console.print(
-        f"Good: rms errors within {goals['position_mm']:g} mm and {goals['angle_deg']:g}°, and no "
-        f"gross error ({MOST_MM:g} mm or {MOST_DEG:g}°). Errors: 95 % of the fingers have less, "
+        f"Good: rms errors of {goals_text(study['goals'])} or less, and no gross error "
+        f"({MOST_MM:g} mm or {MOST_DEG:g}°). Errors: 95 % of the fingers have less, "
         "rms over their poses.",
         soft_wrap=True,
     )
@@ -75,6 +74,33 @@ def print_tables(study: dict[str, Any], console: Console) -> None:
         soft_wrap=True,
     )
     console.print(OPTIMISTIC, soft_wrap=True)
+
+
+def _tried(study: dict[str, Any]) -> str:
+    """What each pair of fingers was tried with."""
+    poses, tried = study["poses"], []
+    for grasp in study["grasps"]:
+        text = f"gap {grasp['gap_mm']:g} mm: {poses['edge']} edges"
+        if diameters := [f"{diameter_mm:g}" for diameter_mm in grasp["cables_mm"]]:
+            text += f", {poses['cable']} cables of {', '.join(diameters)} mm"
+            text += " each" * (len(diameters) > 1)
+        tried.append(text)
+    return "; ".join(tried)
+
+
+def goals_text(goals: dict[str, float]) -> str:
+    """Goals in words, as in `0.6 mm and 2.5°`, or for edges and cables apart."""
+    by_kind = {
+        kind: " and ".join(
+            f"{goals[f'{kind}_{unit}']:g}{sign}"
+            for unit, sign in (("mm", " mm"), ("deg", "°"))
+            if f"{kind}_{unit}" in goals
+        )
+        for kind in ("edge", "cable")
+    }
+    if by_kind["edge"] == by_kind["cable"]:
+        return by_kind["edge"]
+    return ", ".join(f"{text} ({kind}s)" for kind, text in by_kind.items() if text)
 
 
 def mask_line(shift: dict[str, Any]) -> str:
@@ -168,7 +194,7 @@ def picture(study: dict[str, Any]) -> bytes:
     figure = Figure(figsize=(10.5, 5.0), layout="constrained")
     FigureCanvasAgg(figure)
     left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.9))
-    goals, columns = study["goals"], study["columns"]
+    columns = study["columns"]
     good = 100.0 * np.array([column["yield"] for column in columns.values()])
     ends = 100.0 * np.array([column["yield_95"] for column in columns.values()])
     whiskers = np.abs(ends.T - good)
@@ -177,7 +203,7 @@ def picture(study: dict[str, Any]) -> bytes:
     for place, (share, top) in enumerate(zip(good, ends[:, 1], strict=True)):
         left.text(place, top + 1.0, f"{share:.1f}", ha="center")
     left.set(ylim=(0.0, 110.0), yticks=range(0, 101, 20))
-    left.set_ylabel(f"good fingers (%): {goals['position_mm']:g} mm, {goals['angle_deg']:g}°")
+    left.set_ylabel(f"good fingers (%): {goals_text(study['goals'])}")
     entries = [entry for entry in study["tolerances"].values() if "total" in entry]
     rows = np.arange(len(entries))
     for shift, figures, colour in zip((-0.2, 0.2), _FIGURES, ("#4c78a8", "#f58518"), strict=True):

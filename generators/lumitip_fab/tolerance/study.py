@@ -20,7 +20,7 @@ from lumitip_fab.config.messages import shown_path
 from lumitip_fab.derive.making.tolerances import MODEL_VERSION, fingerprint, spreads
 from lumitip_fab.errors import BuildError, InputError, Problem
 from lumitip_fab.pipeline.fingerprint import made_with
-from lumitip_fab.tolerance.bench import COLUMNS, POSE_SETS, Case, bench
+from lumitip_fab.tolerance.bench import COLUMNS, POSE_SETS, Case, bench, errors_over
 from lumitip_fab.tolerance.draws import FACTORS, Draws, directions, draw
 from lumitip_fab.tolerance.options import GOOD_PERCENT, MASK_FINGERS, Goals, Options
 from lumitip_fab.tolerance.sobol import indices, mixed
@@ -45,7 +45,7 @@ _LEAST_EXTENT_MM = 0.1
 Indices = NDArray[np.intp]
 Errors = Callable[[Draws, tuple[str, ...]], Floats]
 """Errors of fingers as `Bench.errors` has them."""
-Part = tuple[Case, int, Draws, tuple[str, ...], Indices]
+Part = tuple[tuple[Case, ...], int, Draws, tuple[str, ...], Indices]
 """Fingers of one set of poses: its number, their deviations, the columns, and their places."""
 Run = Callable[[Callable[[Part], tuple[Indices, Floats]], list[Part]], Iterable[Any]]
 """`map`, here or on several processes."""
@@ -66,11 +66,11 @@ def study(
         InputError: if the fingers are compliant, or no pose can be estimated with the cells.
         BuildError: if a worker is stopped.
     """
-    case = case_of(config, layout, options)
+    cases = cases_of(config, layout, options)
     table, spread = config.catalogue.tolerances, spreads(config)
     take = partial(draw, table, spread, len(layout))
     drawn = take(options.fingers, options.seed)
-    with on_cores(case, cores) as errors:
+    with on_cores(cases, cores) as errors:
         columns = errors(drawn, COLUMNS)
         draws = draws_of(options.fingers)
         sensitive = sensitivities(errors, take, draws, options.seed) if draws else {}
@@ -99,12 +99,14 @@ def study(
     }
     return {
         "design": config.parameters.name,
-        "fingerprint": fingerprint(config, layout, options.mask_conditions),
+        **_fingerprint(config, layout, options),
         "made_with": made_with("tolerance", "numpy", "scipy"),
         "model_version": MODEL_VERSION,
         "evidence": EVIDENCE,
-        "goals": vars(options.goals),
-        "gap_mm": options.gap_mm,
+        "goals": options.goals.set,
+        "grasps": [
+            {"gap_mm": grasp.gap_mm, "cables_mm": list(grasp.cables_mm)} for grasp in options.grasps
+        ],
         "fingers": options.fingers,
         "poses": {"edge": options.poses, "cable": options.poses, "sets": POSE_SETS},
         "seed": options.seed,
@@ -120,12 +122,29 @@ def study(
             "fingers": len(few["gap"]),
             **_yield(mask_good),
         },
-        "pose_estimator": bench(case).compared(take(_SEARCHED, options.seed)),
+        "pose_estimator": _compared(cases, take(_SEARCHED, options.seed)),
     }
 
 
-def case_of(config: Input, layout: Layout, options: Options) -> Case:
-    """The case of a design.
+def _fingerprint(config: Input, layout: Layout, options: Options) -> dict[str, str]:
+    conditions = options.mask_conditions
+    return {"fingerprint": fingerprint(config, layout, conditions)} if conditions else {}
+
+
+def _compared(cases: tuple[Case, ...], drawn: Draws) -> dict[str, float]:
+    """How the estimates of all cases compare with those of `PoseEstimator`, by `Bench.compared`."""
+    found = [bench(case).compared(drawn) for case in cases]
+    frames = [one["frames"] for one in found]
+    shares = {
+        name: float(np.average([one[name] for one in found], weights=frames))
+        for name in found[0]
+        if name != "frames"
+    }
+    return {"frames": sum(frames), **shares}
+
+
+def cases_of(config: Input, layout: Layout, options: Options) -> tuple[Case, ...]:
+    """The cases of a design, one for each gap.
 
     Raises:
         InputError: if its fingers are compliant, or no pose can be estimated with its cells.
@@ -143,12 +162,22 @@ def case_of(config: Input, layout: Layout, options: Options) -> Case:
             "allows grids of two columns and two rows or more. Add cells."
         )
         raise InputError([Problem(file, 0, "grid.columns", text)])
-    case = Case(layout, Model.from_layout(layout, options.gap_mm), options.poses, options.seed)
+    cases = tuple(
+        Case(
+            layout,
+            Model.from_layout(layout, grasp.gap_mm),
+            options.poses,
+            options.seed,
+            grasp.cables_mm,
+        )
+        for grasp in options.grasps
+    )
     try:
-        bench(case)
+        for case in cases:
+            bench(case)
     except (EstimationError, TwinError) as error:
         raise InputError([Problem(file, 0, "grid.columns", str(error))]) from error
-    return case
+    return cases
 
 
 def mask_allowance(
@@ -229,6 +258,7 @@ def _column(rows: Floats, goals: Goals) -> dict[str, Any]:
             for name, values in zip(
                 names, np.percentile(rows[:, :4], _PERCENTILES, axis=0).T, strict=True
             )
+            if np.isfinite(values).all()  # no cables, no errors of cables
         },
     }
 
@@ -242,23 +272,25 @@ def _yield(found: Good) -> dict[str, Any]:
 
 
 @contextmanager
-def on_cores(case: Case, cores: int | None) -> Iterator[Errors]:
+def on_cores(cases: tuple[Case, ...], cores: int | None) -> Iterator[Errors]:
     """A function like `Bench.errors` on several processes; one finger after the other is tried at
     the next of `POSE_SETS`."""
     if cores == 1:
-        yield partial(_errors, case, map)
+        yield partial(_errors, cases, map)
         return
     with workers(cores or 1_000) as pool:
         try:
-            yield partial(_errors, case, pool.map)
+            yield partial(_errors, cases, pool.map)
         except BrokenProcessPool as error:
             raise BuildError("a worker was stopped from outside; run it again") from error
 
 
-def _errors(case: Case, run: Run, drawn: Draws, columns: tuple[str, ...] = COLUMNS) -> Floats:
+def _errors(
+    cases: tuple[Case, ...], run: Run, drawn: Draws, columns: tuple[str, ...] = COLUMNS
+) -> Floats:
     count = len(drawn["gap"])
     parts: list[Part] = [
-        (case, number, {name: rows[some] for name, rows in drawn.items()}, columns, some)
+        (cases, number, {name: rows[some] for name, rows in drawn.items()}, columns, some)
         for number in range(min(POSE_SETS, count))
         for all_ in [np.arange(number, count, POSE_SETS)]
         for some in np.split(all_, range(_CHUNK, len(all_), _CHUNK))
@@ -270,8 +302,8 @@ def _errors(case: Case, run: Run, drawn: Draws, columns: tuple[str, ...] = COLUM
 
 
 def _errors_of(part: Part) -> tuple[Indices, Floats]:
-    case, number, drawn, columns, some = part
-    return some, bench(case, number).errors(drawn, columns)
+    cases, number, drawn, columns, some = part
+    return some, errors_over(cases, number, drawn, columns)
 
 
 def _rounded(value: float) -> float:

@@ -1,6 +1,7 @@
 """Yield of fingers, and its interval: fingers of one set of poses are good or bad together."""
 
 import math
+from dataclasses import astuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +18,13 @@ _Z = 1.96  # of 95 %
 def worst_of(rows: Floats) -> Floats:
     """Errors of position (mm) and angle (degrees), the worse of edges and cables, from those of
     both kinds, shape `(fingers, 2)`."""
-    return np.maximum(rows[:, :2], rows[:, 2:4])
+    return np.fmax(rows[:, :2], rows[:, 2:4])  # NaN where no cable was tried
 
 
 def good(rows: Floats, goals: Goals) -> Good:
     """Whether the errors of each finger (see `Bench.errors`) meet the goals and none is gross."""
-    position, angle = worst_of(rows).T
-    found: Good = (position <= goals.position_mm) & (angle <= goals.angle_deg) & (rows[:, 4] == 0.0)
+    missed = (rows[:, :4] > astuple(goals)).any(axis=1)  # NaN, where no cable was tried, is not
+    found: Good = ~missed & (rows[:, 4] == 0.0)
     return found
 
 
