@@ -1,6 +1,7 @@
 """Damage the flange's board, and exactly the right checks fail."""
 
 import re
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,6 +10,9 @@ import pytest
 from board_damages import in_part, moved_part, once, swapped_pads
 from damages import failing
 from lumitip_fab.checks import board
+from lumitip_fab.config.load import load
+from lumitip_fab.derive import resolve
+from lumitip_fab.derive.boards.supply_input import halved
 from lumitip_fab.design.encoding import read_design
 
 pytestmark = pytest.mark.slow
@@ -156,3 +160,27 @@ def test_the_flange_passes(boards: Callable[[str], Path]) -> None:
     assert [m for m in found if not m.passed] == []
     layout = {m.check.removeprefix("board.") for m in found if "hot_loop" in m.check}
     assert layout == {"hot_loop", "hot_loop_ground", "hot_loop_input"}
+
+
+def test_a_gate_that_bears_less_than_the_tvs_diode_lets_through(
+    boards: Callable[[str], Path], tmp_path: Path
+) -> None:
+    """At 24 V a divider halves what is between gate and source."""
+    damaged = Path(shutil.copytree(boards("fingertip"), tmp_path / "damaged"))
+    path, before = damaged / FLANGE, (boards("fingertip") / FLANGE).read_text()
+    assert failing(damaged, "board", "flange") == set()
+    path.write_text(in_part(before, "R1", r'value "100K"', 'value "1M"'))
+    assert failing(damaged, "board", "flange") == {"gate_voltage"}
+    path.write_text(in_part(before, "R1", r'value "100K"', 'value "some"'))
+    assert failing(damaged, "board", "flange") == {"gate_voltage"}
+
+
+@pytest.mark.parametrize(("volts", "divides"), [(5.0, False), (12.0, False), (12.5, True)])
+def test_a_divider_halves_the_gate_where_the_tvs_diode_holds_more_than_it_bears(
+    volts: float, divides: bool, design_dir: Path
+) -> None:
+    asked = load(design_dir / "fingertip.toml").with_values({"supply.voltage_v": volts})
+    config = resolve(asked).config
+    assert halved(config) == divides
+    parts = config.parts.flange
+    assert parts.tvs.clamping_v / (2 if divides else 1) <= parts.transistor.gate_v

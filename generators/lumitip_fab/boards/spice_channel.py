@@ -213,7 +213,7 @@ def string(parts: tuple[Component, ...], design: Design) -> Iterator[str]:
     yield from _model(strings)
     yield from (".control", "op", "let i_ma = -1000*i(vsupply)", "print i_ma")
     if strings.regulation:
-        yield from _ends(strings.regulation, wiring.supply_v)
+        yield from _ends(strings, strings.regulation, wiring.supply_v)
     yield ".endc"
 
 
@@ -248,9 +248,7 @@ def _source(parts: tuple[Component, ...], design: Design) -> Iterator[str]:
 def _subcircuit(entry: CurrentSource, strings: Strings) -> Iterator[str]:
     """The source by the figures of its data sheet: reference current, line regulation, drift with
     temperature, and dropout."""
-    held = strings.regulation
-    hottest = held.temperatures_c[1] if held else 60.0
-    drift = entry.set_drift / (hottest - 25)
+    drift = entry.set_drift / (strings.temperatures_c[1] - 25)
     reference = f"{entry.set_ua:g}u*(1+{entry.line_per_v:g}*v(in,out))"
     opened = f"0.5*(1+tanh((v(in,out)-{entry.dropout_v - _BELOW_V:g})/{_DROPOUT_KNEE_V:g}))"
     yield ".subckt source in out set"
@@ -279,10 +277,10 @@ def _model(strings: Strings) -> Iterator[str]:
     yield f".model led d(n={strings.ideality:g} is={{{amperes}}} eg={_BAND_GAP_EV:g})"
 
 
-def _ends(held: Regulation, volts: float) -> Iterator[str]:
+def _ends(strings: Strings, held: Regulation, volts: float) -> Iterator[str]:
     """The current at each end of supply and temperature."""
     for (low, sign), (warm, celsius) in itertools.product(
-        enumerate((-1, 1)), enumerate(held.temperatures_c)
+        enumerate((-1, 1)), enumerate(strings.temperatures_c)
     ):
         yield f"alter Vsupply = {volts * (1 + sign * held.supply_range):g}"
         yield f"option temp={celsius:g}"

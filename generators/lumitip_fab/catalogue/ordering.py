@@ -110,6 +110,9 @@ class Fab(Entry):
     rotations_assumed: tuple[str, ...] = ()
     """Beginnings in `rotations` whose offset is assumed: the assembly note names these parts, and
     those that no beginning fits."""
+    part_rotations: Mapping[str, float] = Field(default_factory=dict)
+    """Offset (degrees) of single parts by their order number, in place of that of their footprint:
+    how the house's own footprint of the part lies."""
 
     @model_validator(mode="after")
     def _layers_whole(self) -> Self:

@@ -34,16 +34,16 @@ def _measured(
     entry, held = read.design.packages.source, read.design.electrical.strings.regulation
     if held is None:
         return
-    coldest, hottest = held.temperatures_c
     strings = read.design.electrical.strings
+    coldest, hottest = strings.temperatures_c
     volts = float(read.supply.removesuffix("V"))
     loads, left = [], []
     for number, (lit, current_ma) in enumerate(zip(lengths, amps_ma, strict=True), start=1):
         set_v = entry.set_ua * 1e-6 * _value(read, number, "SET")
         warm_v = strings.forward_v - strings.forward_tolerance_v
-        warm_v -= held.forward_v_per_k * (hottest - ROOM_C)
+        warm_v -= strings.forward_v_per_k * (hottest - ROOM_C)
         cold_v = strings.forward_v + strings.forward_tolerance_v
-        cold_v += held.forward_v_per_k * (ROOM_C - coldest)
+        cold_v += strings.forward_v_per_k * (ROOM_C - coldest)
         most_v = volts * (1 + held.supply_range) - lit * warm_v - set_v
         highest_ma = current_ma * (1 + held.spread + held.change)
         bears_w = (entry.junction_c - hottest) / entry.thermal_k_per_w

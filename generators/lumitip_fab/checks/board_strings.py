@@ -61,6 +61,7 @@ def _group(read: ReadBoard, name: str) -> int | None:
 CURRENT_SHARE = 0.02
 THERMAL_V = 0.02585
 SUPPLY_HIGH, RESISTOR_LOW = 1.05, 0.99
+ROOM_C = 25.0
 MOST_SHARE = 0.8
 """Largest share of the rating: thick-film chips are rated to 70 °C; at 87 °C 0.8 of it is left."""
 RATED_W = {"1608": 0.1, "2012": 0.125, "3216": 0.25, "3225": 0.5, "5025": 0.75}
@@ -78,7 +79,7 @@ def measure_loads(read: ReadBoard, chains: tuple[int, ...]) -> Iterator[Measurem
     volts = float(read.supply.removesuffix("V"))
     shares = [_share(read, f"R{i}", leds, volts) for i, leds in enumerate(chains, start=1)]
     worst = max(range(len(shares)), key=lambda i: (math.isnan(shares[i]), shares[i]))
-    note = f"R{worst + 1}, over the tolerances of supply, LEDs and resistor"
+    note = f"R{worst + 1}, over the tolerances of supply, LEDs and resistor, and temperature"
     yield read.figure("resistor_load", 100 * shares[worst], 0, 100 * MOST_SHARE, "%", note)
 
 
@@ -93,12 +94,13 @@ def _share(read: ReadBoard, ref: str, leds: int, volts: float) -> float:
 
 
 def _highest_a(read: ReadBoard, volts: float, leds: int, resistance: float) -> float:
-    """Current with every LED at its lowest forward voltage."""
+    """Current with every LED at its lowest forward voltage, in the heat."""
     strings = read.design.electrical.strings
     slope = strings.ideality * THERMAL_V
+    warmer_v = strings.forward_v_per_k * (strings.temperatures_c[1] - ROOM_C)
 
     def missing_v(amps: float) -> float:
-        each = strings.forward_v - strings.forward_tolerance_v
+        each = strings.forward_v - strings.forward_tolerance_v - warmer_v
         each += slope * math.log(1000 * amps / strings.target_ma)
         return volts - leds * each - amps * resistance
 

@@ -71,8 +71,10 @@ def _loosened(found: Netlist, design: Design) -> Iterator[str]:
     """Tolerances that are too loose, temperatures that no figure is of, and other options."""
     bases = any(element.name[0] == "Q" for element in found.elements)
     most = dict([_RELATIVE]) | _DEFAULTS | (_OF_BASES if bases else {})
-    held = design.electrical.strings.regulation
-    known = {"temp": {_ROOM_C, *(held.temperatures_c if held else ())}, "tnom": {_ROOM_C}}
+    known = {
+        "temp": {_ROOM_C, *design.electrical.strings.temperatures_c},
+        "tnom": {_ROOM_C},
+    }
     for name, text in found.options:
         value = figure(text)
         if value not in known.get(name, ()) and not 0 < (value or 0.0) <= most.get(name, 0.0):

@@ -82,18 +82,28 @@ def _other_texts(read: ReadBoard, row: dict[str, str], refs: list[str]) -> Itera
 
 
 def _turned_by(read: ReadBoard, row: dict[str, str], part: Part, fab: Fab) -> float:
-    """How far a part would be turned from its pads: from lead 1 along its row to the right; of a
-    module, as its land pattern lies."""
+    """How far a part would be turned from its pads: from lead 1 along its row to the right; of an
+    LED, from its cathode; of a module, as its land pattern lies."""
     pads = {t.number: t.at for t in part.terminals}
     last = str(max(2, len(pads) // 2))
     dx, dy = np.subtract(pads[last], pads["1"])
+    if _begins_with_its_anode(read, part.ref):
+        dx, dy = -dx, -dy
     seen = math.degrees(math.atan2(-dy, dx))  # counter-clockwise, from the front
     seen -= _lying_deg(read, part.ref, last)
     if not part.front:
         seen = 180 - seen if fab.back_from_behind else seen
     fits = [(start, turn) for start, turn in fab.rotations if part.footprint.startswith(start)]
-    seen += max(fits, key=lambda fit: len(fit[0]))[1] if fits else 0.0
+    of_prefix = max(fits, key=lambda fit: len(fit[0]))[1] if fits else 0.0
+    seen += dict(fab.part_rotations).get(read.ordered(part.ref)[0], of_prefix)
     return abs((float(row["angle_deg"]) - seen + 180) % 360 - 180)
+
+
+def _begins_with_its_anode(read: ReadBoard, ref: str) -> bool:
+    """Whether pad 1 of a part, the marked one, is the anode of an LED of the cells."""
+    led, cells = read.design.packages.led, read.cells_hold
+    is_led = cells is not None and cells.kind == "led" and ref.rstrip("_0123456789") == cells.letter
+    return is_led and led.marked == "anode"
 
 
 def _lying_deg(read: ReadBoard, ref: str, last: str) -> float:

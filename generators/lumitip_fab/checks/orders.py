@@ -121,7 +121,8 @@ def _unsure(read: ReadBoard, fab: Fab, note: str) -> list[str]:
     for ref in read.assembled():
         footprint = read.parts[ref].footprint
         fits = [start for start, _ in fab.rotations if footprint.startswith(start)]
-        if max(fits, key=len, default="") in ("", *fab.rotations_assumed):
+        of_its_own = read.ordered(ref)[0] in dict(fab.part_rotations)
+        if not of_its_own and max(fits, key=len, default="") in ("", *fab.rotations_assumed):
             unsure.add(ref)
     return sorted(named ^ unsure)
 

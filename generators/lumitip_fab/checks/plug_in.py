@@ -35,6 +35,8 @@ def measure_plug_in(read: ReadBoard) -> Iterator[Measurement]:
     if plug_in is None:
         yield read.figure("plug_in_voltage", math.nan, 0, 0, "V", "no figures in the design")
         return
+    note = f"{_MOSFET}, gate to source, while {_TVS} holds a surge"
+    yield read.figure("gate_voltage", _gate_v(read, ground, plug_in), 0, plug_in.gate_v, "V", note)
     if plug_in.capacitor_uf:
         yield from _damped(read, plug_in)
         return
@@ -87,6 +89,20 @@ def _wrong_way(read: ReadBoard, entry: int | None, ground: int | None) -> Iterat
         fed = at_contact(read, TO_EMITTER, read.design.emitter.connector.supply)
         if fed is None or fed != source:
             yield f"{TO_EMITTER}: not behind {_MOSFET}"
+
+
+def _gate_v(read: ReadBoard, ground: int | None, plug_in: PlugIn) -> float:
+    """Voltage between gate and source with the TVS diode's at its rated pulse on the supply, by the
+    resistors from the gate; the whole of it without one to the source."""
+    source, gate = (_lead(read, name) for name in "SG")
+    siemens = {source: 0.0, ground: 0.0}
+    for part in (d.ref for d in read.components if _resists(d)):
+        ends = {read.group(part, 1), read.group(part, 2)}
+        others = ends - {gate}
+        if gate in ends and len(others) == 1 and (other := others.pop()) in siemens:
+            siemens[other] += 1.0 / ohm(read.parts[part].value)
+    whole = sum(siemens.values())
+    return plug_in.clamping_v * (siemens[ground] / whole if whole else 1.0)
 
 
 def _resists(device: Component) -> bool:

@@ -23,10 +23,6 @@ class Regulation:
     """Power with which its chip reaches its highest temperature at the highest ambient one."""
     supply_range: float
     """Fraction by which the supply changes, either way."""
-    temperatures_c: tuple[float, float]
-    """Least and greatest ambient temperature."""
-    forward_v_per_k: float
-    """Greatest fall of an LED's forward voltage with temperature."""
     resistor_per_k: float
     """Temperature coefficient of its resistors: a fraction, either way."""
     most_load: float
@@ -47,8 +43,13 @@ class Strings:
     """Fraction by which the supply may be off, either way."""
     resistor_tolerance: float
     """Fraction by which a resistor may be off, either way."""
+    temperatures_c: tuple[float, float]
+    """Least and greatest ambient temperature."""
+    forward_v_per_k: float
+    """Greatest fall of an LED's forward voltage with temperature."""
     low_ma: tuple[float, ...]
-    """Current of each string with the lowest supply, the highest forward voltages and resistor."""
+    """Current of each string with the lowest supply, the highest forward voltages, in the cold, and
+    the highest resistor; with current sources by their tolerances."""
     high_ma: tuple[float, ...]
     fewer_leds: int
     """A shorter string, to compare: LEDs in it, and its currents."""
@@ -57,7 +58,7 @@ class Strings:
     resistor_w: float
     """Largest load of a resistor that carries a string's current, nominal."""
     resistor_high_w: float
-    """The same at the worst case of all tolerances."""
+    """The same at the worst case of all tolerances and temperatures."""
     resistor_rated_w: float
     """Rated power of the resistor's package."""
     regulation: Regulation | None = None
@@ -160,6 +161,10 @@ class PlugIn:
     """Least and greatest breakdown voltage of the TVS diode."""
     tvs_ohm: float
     """Dynamic resistance of the TVS diode."""
+    clamping_v: float
+    """Its voltage at its rated pulse."""
+    gate_v: float
+    """Rated voltage between gate and source of the MOSFET."""
     limit_v: float
     """Largest voltage at the regulator's input; without a regulator, at the supply behind the
     MOSFET."""

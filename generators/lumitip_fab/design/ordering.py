@@ -27,6 +27,11 @@ class Fab:
     """Offset of the angle (degrees) of footprints, by the beginning of their name."""
     rotations_assumed: tuple[str, ...]
     """Beginnings whose offset is assumed."""
+    part_rotations: tuple[tuple[str, float], ...]
+    """Offset of the angle (degrees) of single parts, by their order number."""
+    anode_first: tuple[str, ...]
+    """Order numbers of LEDs whose pad 1, the marked one, is the anode: houses count an LED's angle
+    from the cathode."""
     remark: str
     """Remark on ordering there; may be empty."""
 

@@ -30,7 +30,10 @@ def string_rows(design: Design) -> Iterator[Row]:
     """Current and load of the strings, with resistors or with current sources."""
     strings, wiring = design.electrical.strings, design.wiring
     longest = max(len(string) for string in wiring.strings)
+    coldest, hottest = strings.temperatures_c
     currents = {
+        "coldest": coldest,
+        "hottest": hottest,
         "nominal": _span(wiring.current_ma),
         "low": min(strings.low_ma),
         "high": max(strings.high_ma),
@@ -53,11 +56,8 @@ def string_rows(design: Design) -> Iterator[Row]:
 
 
 def _of_sources(held: Regulation) -> dict[str, object]:
-    coldest, hottest = held.temperatures_c
     return {
         "held": held,
-        "coldest": coldest,
-        "hottest": hottest,
         "supply_percent": 100 * held.supply_range,
         "change_percent": 100 * held.change,
         "spread_percent": 100 * held.spread,

@@ -70,13 +70,16 @@ def angle_at(part: Component, fab: Fab) -> float:
 def turned_by_assumption(part: Component, fab: Fab) -> bool:
     """Whether the offset of a part's angle is assumed, or no offset is known for its footprint."""
     start, _ = _rotation(part, fab)
-    return not start or start in fab.rotations_assumed
+    return start in ("", *fab.rotations_assumed)
 
 
 def _rotation(part: Component, fab: Fab) -> tuple[str, float]:
-    """The longest beginning of a footprint's name in a fab's table, and its offset (degrees)."""
+    """A part's order number or the longest beginning of its footprint's name in a fab's tables, and
+    its offset (degrees)."""
     fitting = [each for each in fab.rotations if part.footprint.name.startswith(each[0])]
-    return max(fitting, key=lambda each: len(each[0]), default=("", 0.0))
+    known = max(fitting, key=lambda each: len(each[0]), default=("", 0.0))
+    start, turn = next((each for each in fab.part_rotations if each[0] == part.part), known)
+    return start, turn + 180.0 * (part.part in fab.anode_first)
 
 
 def _placed(part: Component, fab: Fab) -> Row:

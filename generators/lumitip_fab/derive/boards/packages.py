@@ -83,6 +83,7 @@ def derive_rules(config: Input, faults: Diagnostics) -> Rules:
 
 def derive_fabs(config: Input) -> tuple[Fab, ...]:
     """Every PCB fab of the catalogue."""
+    led = config.parts.emitter.led
     return tuple(
         Fab(
             name=name,
@@ -93,6 +94,8 @@ def derive_fabs(config: Input) -> tuple[Fab, ...]:
             back_from_behind=fab.back_angle == "from behind",
             rotations=tuple(fab.rotations.items()),
             rotations_assumed=fab.rotations_assumed,
+            part_rotations=tuple(fab.part_rotations.items()),
+            anode_first=(led.order_number,) if led.marked == "anode" else (),
             remark=fab.remark,
         )
         for name, fab in config.catalogue.fabs.items()

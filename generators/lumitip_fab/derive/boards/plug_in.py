@@ -73,6 +73,8 @@ def derive_plug_in(config: Input, faults: Diagnostics) -> tuple[PlugIn, ...]:
             capacitor_tolerance=CAPACITANCE_TOLERANCE,
             breakdown_v=parts.tvs.breakdown_v,
             tvs_ohm=parts.tvs.dynamic_ohm,
+            clamping_v=parts.tvs.clamping_v,
+            gate_v=parts.transistor.gate_v,
             limit_v=_limit_v(config),
             peak_a=high_v / low_ohm if full_uf else 0.0,
             pulse_a=parts.transistor.pulse_a,

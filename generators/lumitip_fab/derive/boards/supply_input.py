@@ -73,10 +73,12 @@ def is_regulated(config: Input) -> bool:
 
 
 def halved(config: Input) -> bool:
-    """Whether a divider halves a high supply for the MOSFET's gate."""
-    p = config.parameters
-    high_v = p.supply.voltage_v * (1 + ratings.SUPPLY_TOLERANCE)
-    return high_v > GATE_SHARE * config.parts.flange.transistor.gate_v
+    """Whether a divider halves the supply for the MOSFET's gate: a high one, or one whose TVS diode
+    holds surges only above what the gate bears."""
+    parts = config.parts.flange
+    high_v = config.parameters.supply.voltage_v * (1 + ratings.SUPPLY_TOLERANCE)
+    gate_v = parts.transistor.gate_v
+    return high_v > GATE_SHARE * gate_v or parts.tvs.clamping_v > gate_v
 
 
 def input_range_v(config: Input) -> tuple[float, float]:

@@ -11,7 +11,7 @@ from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.ambient import derive_ambient, scan_us
 from lumitip_fab.derive.wiring.protection import derive_protection
 from lumitip_fab.derive.wiring.ratings import RESISTOR_TOLERANCE, SUPPLY_TOLERANCE
-from lumitip_fab.derive.wiring.sources import regulation
+from lumitip_fab.derive.wiring.sources import COLDEST_C, FORWARD_V_PER_K, HOTTEST_C, regulation
 from lumitip_fab.derive.wiring.strings import Strings as DerivedStrings
 from lumitip_fab.derive.wiring.strings import string_of
 from lumitip_fab.derive.wiring.wiring import Muxing
@@ -52,6 +52,8 @@ def _strings(config: Input, strings: DerivedStrings) -> Strings:
         target_ma=p.emitter.current_ma,
         supply_tolerance=SUPPLY_TOLERANCE,
         resistor_tolerance=RESISTOR_TOLERANCE,
+        temperatures_c=(COLDEST_C, HOTTEST_C),
+        forward_v_per_k=FORWARD_V_PER_K,
         low_ma=tuple(string.low_ma for string in strings.strings),
         high_ma=tuple(string.high_ma for string in strings.strings),
         fewer_leds=fewer,

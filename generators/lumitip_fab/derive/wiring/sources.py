@@ -68,12 +68,15 @@ def longest_with_resistor(config: Input) -> int:
 
 
 def _extreme_ma(led: Led, volts: float, leds: int, ohm: float, at_ma: float, sign: int) -> float:
-    """Current at one end of all tolerances: the highest with `sign` 1, the lowest with -1."""
+    """Current at one end of all tolerances and temperatures: the highest with `sign` 1, the lowest
+    with -1."""
+    kelvin = HOTTEST_C - ROOM_C if sign > 0 else ROOM_C - COLDEST_C
+    off_v = led.forward_tolerance_v + FORWARD_V_PER_K * kelvin
     return string_current_ma(
         volts * (1 + sign * ratings.SUPPLY_TOLERANCE),
         leds,
         ohm * (1 - sign * ratings.RESISTOR_TOLERANCE),
-        led.forward_voltage_v - sign * led.forward_tolerance_v,
+        led.forward_voltage_v - sign * off_v,
         at_ma,
         led.ideality,
     )
@@ -207,8 +210,6 @@ def regulation(config: Input, strings: tuple[String, ...]) -> Regulation:
         power_w=max(s.high_ma for s in strings) / 1000 * across_v,
         rated_w=source.rated_w(HOTTEST_C),
         supply_range=SUPPLY_RANGE,
-        temperatures_c=(COLDEST_C, HOTTEST_C),
-        forward_v_per_k=FORWARD_V_PER_K,
         resistor_per_k=RESISTOR_PER_K,
         most_load=MOST_SOURCE_LOAD,
     )
