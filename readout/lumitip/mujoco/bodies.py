@@ -7,7 +7,8 @@ from typing import Literal
 import mujoco
 import numpy as np
 
-from lumitip.grid import Floats
+from lumitip.grid import Floats, Integers
+from lumitip.mujoco.copies import Copies
 from lumitip.mujoco.materials import Material, Materials
 from lumitip.mujoco.outlines import clipped, hull, runs, sheet_outlines
 
@@ -19,6 +20,9 @@ _UPRIGHT = 0.999  # the same, from which on it is a disc
 _BOX, _MESH = int(mujoco.mjtGeom.mjGEOM_BOX), int(mujoco.mjtGeom.mjGEOM_MESH)
 _BALLS = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
 _CAPSULE, _CYLINDER = int(mujoco.mjtGeom.mjGEOM_CAPSULE), int(mujoco.mjtGeom.mjGEOM_CYLINDER)
+_SAME_MM, _OFF = 1e-3, 0.317  # geoms this near are one object; no round figure is at a limit
+Part = tuple[Material, Floats, float]
+"""Of a line: material, both ends, shape `(2, 3)`, and radius (mm)."""
 _SEEN = (*_BALLS, _BOX, _MESH, _CAPSULE, _CYLINDER)
 
 
@@ -49,6 +53,9 @@ class Bodies:
             model: with the fingers.
             fingers: ids of their bodies.
             materials: of geoms and flexes.
+
+        Raises:
+            MujocoError: if a material is that of a geom that shades nothing.
         """
         self._model, self._materials = model, materials
         seen = [
@@ -58,6 +65,7 @@ class Bodies:
             and not _fixed(model, int(model.geom_bodyid[geom]), fingers)
         ]
         self._geoms = np.array(seen, np.int64)
+        self._copies = Copies(model, seen, materials)
         self._meshes = {
             geom: _mesh(model, int(model.geom_dataid[geom]))
             for geom in seen
@@ -81,9 +89,10 @@ class Bodies:
         centre_mm = _to(frame, data.geom_xpos[geoms])
         reach_mm = 1e3 * model.geom_rbound[geoms, None]
         near = ((centre_mm + reach_mm > box_mm[0]) & (centre_mm - reach_mm < box_mm[1])).all(axis=1)
-        lines: list[tuple[Material, Floats, float]] = []
+        lines: list[Part] = []
+        solids: list[Body] = []
         for geom, middle in zip(geoms[near].tolist(), centre_mm[near], strict=True):
-            if not self._materials.visible(geom):
+            if not self._materials.visible(geom) or self._copies.only_looked_at(geom):
                 continue
             turn = frame[:3, :3] @ data.geom_xmat[geom].reshape(3, 3)
             size_mm = 1e3 * model.geom_size[geom]
@@ -97,10 +106,11 @@ class Bodies:
                 continue
             z_mm = float(np.clip(points[:, 2], *box_mm[:, 2]).mean())
             if kind == _BALLS[0] or (kind == _CYLINDER and abs(turn[2, 2]) > _UPRIGHT):
-                yield Body("disc", middle[None, :2], z_mm, material, float(size_mm[0]))
+                solids.append(Body("disc", middle[None, :2], z_mm, material, float(size_mm[0])))
             else:
-                yield from _outline(hull(points[:, :2]), z_mm, material)
-        yield from _chains(lines, box_mm)
+                solids += _outline(hull(points[:, :2]), z_mm, material)
+        yield from _without_copies(solids)
+        yield from _chains(_lines_without_copies(lines), box_mm)
 
     def _points(self, geom: int, kind: int, size_mm: Floats, turn: Floats) -> Floats:
         """Points whose hull along z is the outline of a solid around its middle, `(n, 3)` (mm)."""
@@ -167,6 +177,35 @@ def _within(points: Floats, box: Floats) -> bool:
     return bool((points.max(axis=0) > box[0]).all() and (points.min(axis=0) < box[1]).all())
 
 
+def _without_copies(solids: list[Body]) -> list[Body]:
+    """Solids, one of those that are seen alike at the same place."""
+    if len(solids) < 2:
+        return solids
+    kept: dict[tuple[object, ...], Body] = {}
+    for solid in solids:
+        corners = _place(solid.points_mm).tobytes()
+        kept.setdefault(
+            (solid.form, solid.material, corners, int(_place(solid.z_mm)), solid.radius_mm), solid
+        )
+    return list(kept.values())
+
+
+def _lines_without_copies(parts: list[Part]) -> list[Part]:
+    """The same of parts of lines: a copy, begun at either end, would lead a line back."""
+    if len(parts) < 2:
+        return parts
+    kept: dict[tuple[object, ...], Part] = {}
+    for part, ends in zip(parts, _place(np.stack([ends for _, ends, _ in parts])), strict=True):
+        kept.setdefault((part[0], part[2], frozenset(map(tuple, ends.tolist()))), part)
+    return list(kept.values())
+
+
+def _place(of_mm: Floats | float) -> Integers:
+    """The same whole numbers for places that are equal but for rounding."""
+    steps: Integers = np.floor(np.asarray(of_mm) / _SAME_MM + _OFF).astype(np.int64)
+    return steps
+
+
 def _outline(points: Floats, z_mm: float, material: Material) -> Iterator[Body]:
     if len(points) > 2:
         yield Body("outline", points, z_mm, material)
@@ -193,7 +232,7 @@ def _mesh(model: mujoco.MjModel, mesh: int) -> Floats:
     return np.asarray(points[model.mesh_graph[graph + 2 + corners : graph + 2 + 2 * corners]])
 
 
-def _chains(parts: list[tuple[Material, Floats, float]], box_mm: Floats) -> Iterator[Body]:
+def _chains(parts: list[Part], box_mm: Floats) -> Iterator[Body]:
     """Lines within a box, from parts, shape `(2, 3)`, that may begin where others end (mm)."""
     left = list(parts)
     while left:

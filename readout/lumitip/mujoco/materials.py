@@ -36,6 +36,11 @@ class Materials:
         body = mujoco.mj_id2name(self._model, _BODY, int(self._model.geom_bodyid[geom]))
         return self._named.get(own, self._named.get(body, OPAQUE))
 
+    def own_name(self, geom: int) -> str | None:
+        """The name of a geom, if it has a material by it."""
+        name = mujoco.mj_id2name(self._model, _GEOM, geom)
+        return name if name in self._named else None
+
     def of_flex(self, flex: int) -> Material:
         """The material of a flex."""
         return self._named.get(mujoco.mj_id2name(self._model, _FLEX, flex), OPAQUE)
