@@ -3,6 +3,8 @@
 import ast
 import re
 import runpy
+import shutil
+import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -91,6 +93,24 @@ def test_the_installed_files_exist(monkeypatch: pytest.MonkeyPatch) -> None:
     name, module, function = re.fullmatch(r"(\w+) = ([\w.]+):(\w+)", script).groups()  # type: ignore[union-attr]
     source = (NODE / (module.replace(".", "/") + ".py")).read_text("utf-8")
     assert name == "fingertip" and f"def {function}()" in source
+
+
+def test_the_node_runs_with_the_python_of_the_shell(tmp_path: Path) -> None:
+    """By the commands of colcon, which apt runs with /usr/bin/python3 whatever venv is active."""
+    pytest.importorskip("setuptools")
+    folder = shutil.copytree(NODE, tmp_path / "lumitip_ros")
+    subprocess.run(
+        f"{sys.executable} -W ignore setup.py -q egg_info --egg-base {tmp_path} "
+        f"build --build-base {tmp_path}/build install --prefix {tmp_path}/install "
+        f"--record {tmp_path}/log --single-version-externally-managed",
+        shell=True,
+        cwd=folder,
+        check=True,
+        capture_output=True,
+    )
+    (script,) = (tmp_path / "install/lib/lumitip_ros").iterdir()
+    assert script.name == "fingertip"
+    assert script.read_text("utf-8").splitlines()[0] == "#!/usr/bin/env python3"
 
 
 def test_parameters_are_the_same_everywhere(ros: Any) -> None:
