@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from lumitip import Fingertip
-from lumitip.recording import Writer
+from lumitip.recording import Reader, Writer
 
 Make = Callable[..., Any]
 
@@ -220,6 +220,28 @@ def test_a_slow_node_publishes_every_frame_of_a_recording_at_speed_0(
     node.on_activate(None)
     wait_until(lambda: len(node.published["~/values"]) == 30)
     assert diagnosed(node)[2]["not published"] == "0"
+
+
+def test_a_recording_that_begins_anew_has_newer_stamps(make_node: Make, tmp_path: Path) -> None:
+    """tf2 ignores what is older than the last transform."""
+
+    def stamps_s(url: str) -> list[float]:
+        node = make_node(url=url, estimate=False)
+        node.on_configure(None)
+        node.on_activate(None)
+        published = node.published["~/values"]
+        wait_until(lambda: len(published) + node._published.skipped == 10)
+        node.on_cleanup(None)
+        stamps = [m.header.stamp for m in published]
+        return [stamp.sec + stamp.nanosec * 1e-9 for stamp in stamps]
+
+    path = recorded(tmp_path / "run.mcap", 10)
+    began_s = time.time()
+    first, again = stamps_s(f"replay://{path}"), stamps_s(f"replay://{path}?speed=2")
+    assert began_s < first[0] and first[-1] < again[0] and again[-1] < time.time()
+    assert first == sorted(first) and again == sorted(again)
+    kept = [frame.t_wall for frame in Reader(path)]
+    assert stamps_s(f"replay://{path}?speed=0") == pytest.approx(kept, abs=1e-6)
 
 
 def test_deactivating_ends_the_thread_also_of_a_recording_that_waits(

@@ -16,13 +16,11 @@ _NAN = math.nan
 _SCALES = {"_mm": _METRE, "_deg": math.pi / 180.0, "_per_mm": 1.0 / _METRE}
 
 
-def header(frame: Frame, frame_id: str) -> Header:
-    """When the cells of a frame were read, and in which frame they are."""
-    nanoseconds = round(frame.t_wall % 1.0 * 1e9)
-    carried, nanosec = divmod(nanoseconds, 1_000_000_000)
-    return Header(
-        stamp=Time(sec=math.floor(frame.t_wall) + carried, nanosec=nanosec), frame_id=frame_id
-    )
+def header(stamp_s: float, frame_id: str) -> Header:
+    """A time (seconds since 1970), and the frame in which lengths are."""
+    seconds = math.floor(stamp_s)
+    carried, nanosec = divmod(round((stamp_s - seconds) * 1e9), 1_000_000_000)
+    return Header(stamp=Time(sec=seconds + carried, nanosec=nanosec), frame_id=frame_id)
 
 
 def values(frame: Frame, header: Header) -> Values:

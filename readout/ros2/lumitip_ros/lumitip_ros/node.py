@@ -172,7 +172,7 @@ class FingertipNode(LifecycleNode):
     def _publish(self, frame: Frame, arrival_s: float) -> None:
         """Publish a frame; on the thread of `Pace`, which publishers may be used from."""
         try:
-            self._publish_all(frame)
+            self._publish_all(frame, self._stamp_s(frame, arrival_s))
             self._published.number += 1
             # The times of a recording are those of another clock.
             self._published.newest_s = arrival_s if self._recorded else min(frame.t, arrival_s)
@@ -180,11 +180,18 @@ class FingertipNode(LifecycleNode):
             if rclpy.ok():  # else publishers are gone: the process ends
                 self._fail(f"a frame could not be published: {error!r}")
 
-    def _publish_all(self, frame: Frame) -> None:
+    def _stamp_s(self, frame: Frame, arrival_s: float) -> float:
+        """When the cells were read (seconds since 1970). A recording that plays in real time begins
+        again at its end: with its own times tf2 would ignore it from then on."""
+        if self._recorded and not self._every:
+            return time.time() - (time.monotonic() - arrival_s)
+        return frame.t_wall
+
+    def _publish_all(self, frame: Frame, stamp_s: float) -> None:
         tip = self._tip
         if tip is None:
             return
-        header = messages.header(frame, self._text("frame_id"))
+        header = messages.header(stamp_s, self._text("frame_id"))
         contact = self._track(frame.values)
         self._values.publish(messages.values(frame, header))
         self._contact.publish(messages.contact(contact, header))
