@@ -10,7 +10,7 @@ values, reward, terminated, truncated, info = env.step(action)
 
 The observation is a frame. The action is forward, lateral and turning velocity as shares of
 `limits`. The reward is the distance along the line (mm) minus the squared error of the line's
-height (mm²) for each second; a lost line costs 100.
+height (mm²) for each second, with an error of 9 mm at most; a lost line costs 100.
 """
 
 from typing import Any
@@ -25,7 +25,7 @@ from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.links.twin import published_layout
 from lumitip.tasks.picture import Image, Picture
-from lumitip.tasks.task import Settings, Task, TaskError
+from lumitip.tasks.task import LOST_MM, Settings, Task, TaskError
 from lumitip.twin import Twin
 from lumitip.values import shown
 
@@ -105,7 +105,8 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
         self._values = values
         self._frames += 1
         missed_mm = self.task.line()[0] - self.task.settings.target_mm
-        reward = self.task.travelled_mm - before_mm - missed_mm**2 / self.task.settings.rate_hz
+        reward = self.task.travelled_mm - before_mm
+        reward -= float(cost_mm2(missed_mm)) / self.task.settings.rate_hz
         lost = self.task.reason == "lost"
         info = {"missed_mm": missed_mm, "reason": self.task.reason}
         cut_off = not ended and self._frames >= self._most_frames
@@ -126,6 +127,13 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
         if self._values is None:
             raise TaskError("render: the environment has no episode; call reset first")
         return self._picture(self._values, *self.task.line()) if self._picture else None
+
+
+def cost_mm2(missed_mm: Floats | float) -> Floats:
+    """Squared errors of heights, at most that at which a line is lost: where a finger has turned
+    away from its line, the height is without limit."""
+    squared: Floats = np.clip(missed_mm, -LOST_MM, LOST_MM) ** 2
+    return squared
 
 
 def picture_in(render_mode: str | None, layout: Layout) -> Picture | None:

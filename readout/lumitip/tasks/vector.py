@@ -25,6 +25,7 @@ from lumitip.tasks.environment import (
     LOST_REWARD,
     METADATA,
     Observation,
+    cost_mm2,
     picture_in,
     velocities,
 )
@@ -133,7 +134,7 @@ class TraceVectorEnv(VectorEnv[Observation, Observation, NDArray[Any]]):
         self._values = tasks.step(velocities(shares, self._limits))
         self._frames += 1
         missed_mm = tasks.line()[0] - tasks.settings.target_mm
-        rewards = tasks.travelled_mm - before_mm - missed_mm**2 / tasks.settings.rate_hz
+        rewards = tasks.travelled_mm - before_mm - cost_mm2(missed_mm) / tasks.settings.rate_hz
         rewards[tasks.lost] += LOST_REWARD
         terminated = tasks.ended & ~fresh
         truncated = ~tasks.ended & (self._frames >= self._most_frames) & ~fresh

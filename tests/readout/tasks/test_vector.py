@@ -63,6 +63,33 @@ def _same(expected: dict[str, Any], found: dict[str, Any]) -> bool:
     return True
 
 
+def test_a_lost_line_costs_a_hundred_however_far_it_is() -> None:
+    """Fingers beside their lines that turn until these are upright."""
+    from lumitip.tasks.environment import TraceEnv
+    from lumitip.tasks.vector import TraceVectorEnv
+
+    number, settings = 64, Settings("cable", latency=0, lag_s=0.0)
+    many, single = TraceVectorEnv(number, settings=settings), TraceEnv(settings=settings)
+    actions = np.zeros((number, 3), np.float32)
+    actions[:, 1] = np.linspace(0.0, 0.5, number)
+    many.reset(seed=3)
+    many.step(actions)
+    turn = np.tile(np.array([0.0, 0.0, 1.0], np.float32), (number, 1))
+    missed_mm, rewards = np.zeros(number), np.zeros(number)
+    for _ in range(30):
+        _, found, ended, _, info = many.step(turn)
+        missed_mm[ended], rewards[ended] = info["missed_mm"][ended], found[ended]
+    worst = int(np.abs(missed_mm).argmax())
+    assert abs(missed_mm[worst]) > 30.0, "no height was large"
+    assert rewards.min() > -103.0 and rewards[worst] < -95.0
+    single.reset(seed=3 + worst)
+    single.step(actions[worst])
+    ended = False
+    while not ended:
+        _, reward, ended, _, _ = single.step(turn[0])
+    assert reward == pytest.approx(rewards[worst], abs=1e-9)
+
+
 def test_seeds_of_single_tasks_and_none() -> None:
     from lumitip.tasks.vector import TraceVectorEnv
 
