@@ -27,6 +27,7 @@ from lumitip.links.twin import published_layout
 from lumitip.tasks.picture import Image, Picture
 from lumitip.tasks.task import LOST_MM, Settings, Task, TaskError
 from lumitip.twin import Twin
+from lumitip.twin.lines import Numbers
 from lumitip.values import shown
 
 try:
@@ -58,7 +59,7 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
 
         Args:
             layout: the cells; by default those of the published sensor.
-            settings: of the task.
+            settings: of the task; dead cells need a `dead_value`.
             limits: velocities of an action of 1.
             most_frames: an episode is truncated after this number of frames.
             twin: simulates the sensor.
@@ -68,7 +69,7 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
             LayoutError, TaskError: if an argument is invalid.
         """
         layout = published_layout() if layout is None else layout
-        self.task = Task(layout, settings, twin)
+        self.task = Task(layout, with_numbers(settings), twin)
         self.metadata = {**METADATA, "render_fps": round(self.task.settings.rate_hz)}
         self.render_mode = render_mode
         self._picture = picture_in(render_mode, layout)
@@ -129,10 +130,24 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
         return self._picture(self._values, *self.task.line()) if self._picture else None
 
 
-def cost_mm2(missed_mm: Floats | float) -> Floats:
+def with_numbers(settings: Settings | None) -> Settings | None:
+    """The settings, if all cells read numbers: NaN is no part of the observation space.
+
+    Raises:
+        TaskError: if dead cells read NaN.
+    """
+    if isinstance(settings, Settings) and settings.dead_cells and settings.dead_value is None:
+        raise TaskError(
+            f"settings has dead_cells {settings.dead_cells} and no dead_value; an observation has "
+            "numbers only. Set dead_value, 0 to 255, such as 0.0 for cells that stay dark"
+        )
+    return settings
+
+
+def cost_mm2(missed_mm: Numbers | float) -> Floats:
     """Squared errors of heights, at most that at which a line is lost: where a finger has turned
     away from its line, the height is without limit."""
-    squared: Floats = np.clip(missed_mm, -LOST_MM, LOST_MM) ** 2
+    squared: Floats = np.square(np.clip(missed_mm, -LOST_MM, LOST_MM, dtype=np.float64))
     return squared
 
 

@@ -28,6 +28,7 @@ from lumitip.tasks.environment import (
     cost_mm2,
     picture_in,
     velocities,
+    with_numbers,
 )
 from lumitip.tasks.picture import Image
 from lumitip.tasks.task import Settings, TaskError
@@ -57,21 +58,26 @@ class TraceVectorEnv(VectorEnv[Observation, Observation, NDArray[Any]]):
         most_frames: int = 2000,
         twin: Twin | None = None,
         render_mode: str | None = None,
+        max_episode_steps: int | None = None,
     ) -> None:
         """Environments; `reset` begins their episodes.
 
         Args:
             num_envs: number of tasks.
             layout, settings, limits, most_frames, twin, render_mode: of each, see `TraceEnv`.
+            max_episode_steps: as of `gymnasium.make`, another limit beside `most_frames`.
 
         Raises:
             LayoutError, TaskError: if an argument is invalid.
         """
         self.num_envs = arguments.count(num_envs, "num_envs", error=TaskError)
         layout = published_layout() if layout is None else layout
-        self._tasks = TaskBatch(self.num_envs, layout, settings, twin)
+        self._tasks = TaskBatch(self.num_envs, layout, with_numbers(settings), twin)
         self._limits = arguments.instance(limits, Limits, "limits", TaskError)
         self._most_frames = arguments.count(most_frames, "most_frames", error=TaskError)
+        if max_episode_steps is not None:
+            most = arguments.count(max_episode_steps, "max_episode_steps", error=TaskError)
+            self._most_frames = min(self._most_frames, most)
         rate_hz = self._tasks.settings.rate_hz
         self.metadata = {**self.metadata, "render_fps": round(rate_hz)}
         self.render_mode = render_mode

@@ -1,5 +1,6 @@
 """Many environments at once, against Gymnasium's own `SyncVectorEnv` of single ones."""
 
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -16,7 +17,7 @@ SETTINGS = {
     "cable": Settings("cable"),
     "cloth": Settings("cloth", target_mm=1.0, noise=0.5),
     "corner": Settings("cloth", length_mm=120.0, corner=True),
-    "dead cells": Settings("cable", dead_cells=3, latency=3, lag_s=0.0),
+    "dead cells": Settings("cable", dead_cells=3, dead_value=0.0, latency=3, lag_s=0.0),
     "stuck cells": Settings("cable", dead_cells=2, dead_value=255.0, latency=0),
     "short": Settings("cable", length_mm=60.0),
 }
@@ -31,7 +32,7 @@ def test_they_give_what_single_environments_give(name: str) -> None:
     arguments = {"layout": published_layout(), "settings": SETTINGS[name], "most_frames": 60}
     single = gymnasium.vector.SyncVectorEnv([partial(TraceEnv, **arguments)] * NUMBER)
     many = TraceVectorEnv(NUMBER, **arguments)
-    assert np.array_equal(single.reset(seed=3)[0], many.reset(seed=3)[0], equal_nan=True)
+    assert np.array_equal(single.reset(seed=3)[0], many.reset(seed=3)[0])
     chance = np.random.default_rng(4)
     ends = np.zeros(3)
     for _ in range(200):
@@ -40,7 +41,7 @@ def test_they_give_what_single_environments_give(name: str) -> None:
         *expected, expected_info = single.step(actions)
         *found, info = many.step(actions)
         for left, right in zip(expected, found, strict=True):
-            assert np.allclose(left, right, rtol=0.0, atol=1e-9, equal_nan=True)
+            assert np.allclose(left, right, rtol=0.0, atol=1e-9)
         assert _same(expected_info, info)
         lost = (info["reason"] == "lost").sum()
         ends += [found[2].sum(), found[3].sum(), lost]
@@ -61,6 +62,19 @@ def _same(expected: dict[str, Any], found: dict[str, Any]) -> bool:
             equal = left == right if name == "reason" else np.isclose(left, right, atol=1e-9)
             assert equal.all(), name
     return True
+
+
+def test_dead_cells_that_read_nothing_are_rejected() -> None:
+    """NaN is not within the observation space."""
+    from lumitip.tasks.environment import TraceEnv
+    from lumitip.tasks.vector import TraceVectorEnv
+
+    settings = Settings("cable", dead_cells=2)
+    for make in (TraceEnv, partial(TraceVectorEnv, 2)):
+        with pytest.raises(TaskError, match=r"dead_cells 2 and no dead_value; .* Set dead_value"):
+            make(settings=settings)
+        env = make(settings=replace(settings, dead_value=0.0))
+        assert env.reset(seed=1)[0] in env.observation_space
 
 
 def test_a_lost_line_costs_a_hundred_however_far_it_is() -> None:
@@ -162,6 +176,23 @@ def test_ids_make_one_or_many_and_draw_them(kind: str) -> None:
     many.step(np.array([[0.4, 0.0, 0.0]] * 2, np.float32))
     assert np.array_equal(many.render()[0], image)
     assert many.unwrapped.num_envs == 2
+
+
+@pytest.mark.parametrize("mode", [None, "sync"])
+@pytest.mark.parametrize("most_frames", [3, 2000])
+def test_a_limit_of_steps_by_the_name_of_gymnasium(mode: str | None, most_frames: int) -> None:
+    many = gymnasium.make_vec(
+        "lumitip.tasks.environment:Lumitip/TraceCable-v0",
+        2,
+        vectorization_mode=mode,
+        max_episode_steps=5,
+        most_frames=most_frames,
+    )
+    many.reset(seed=1)
+    cut_off = [many.step(np.zeros((2, 3), np.float32))[3].tolist() for _ in range(5)]
+    assert cut_off.index([True, True]) == min(5, most_frames) - 1
+    with pytest.raises(TaskError, match="max_episode_steps is 0"):
+        gymnasium.make_vec(many.spec.id, 2, max_episode_steps=0)
 
 
 def test_a_render_mode_that_there_is_not_is_rejected() -> None:
