@@ -7,7 +7,7 @@ twin.frame(Cable(angle_deg=30.0), t=1.5)                # raw codes, as the firm
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property, lru_cache, partial
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +16,7 @@ from lumitip import arguments
 from lumitip.frame import Codes
 from lumitip.grid import Floats
 from lumitip.layout import Layout
+from lumitip.twin.cached import Cached
 from lumitip.twin.inputs import cell_gains, code_bits, height_in_gap, same_shape
 from lumitip.twin.lines import Numbers
 from lumitip.twin.optics import FULL, Model, TwinError, values_of_drive
@@ -31,7 +32,7 @@ WARM_UP_S = 100.0
 
 
 class Twin:
-    """The optical twin of a fingertip pair. Thread-safe: only caches change."""
+    """The optical twin of a fingertip pair. Thread-safe: only caches change. Can be pickled."""
 
     def __init__(
         self,
@@ -82,13 +83,14 @@ class Twin:
         """Photocurrent of each cell in the empty grasp; 1 is the largest current of the pull-up."""
         self.empty: Floats = values_of_drive(self.drive, self.model)
         """Value of each cell in the empty grasp before calibration, 0 to 255."""
-        cached, optics = lru_cache(maxsize=8), (layout, self._pairs, self.emitter)
-        self._direct = cached(partial(direct_plane, *optics))
-        self._scatter = cached(partial(scattered_plane, *optics))
-        self._material = cached(self._material_plane)
-        self._outline = cached(self._outline_of)
-        self._edges = cached(partial(edge_table, self._pairs))
-        self._cables = cached(partial(cable_table, self._pairs))
+        optics = layout, self._pairs, self.emitter
+        self._direct = Cached(partial(direct_plane, *optics))
+        self._scatter = Cached(partial(scattered_plane, *optics))
+        self._material = Cached(self._material_plane)
+        self._outline = Cached(self._outline_of)
+        self._edges = Cached(partial(edge_table, self._pairs))
+        self._mixed = Cached(partial(Mixed, layout, self._pairs, self._scattered))
+        self._cables = Cached(partial(cable_table, self._pairs))
 
     def values(self, scene: Scene = ()) -> Floats:
         """Values without noise, calibrated with the empty grasp, 0 to 255, shape `(cells,)`."""
@@ -131,7 +133,7 @@ class Twin:
         flat = not any(isinstance(thing, Cable) for thing in found)
         if flat and len({thing.height for thing in found}) == 1:
             return self._of_flat(found)
-        return self._mixed.light(found)
+        return self._mixed().light(found)
 
     def edges(
         self,
@@ -284,10 +286,6 @@ class Twin:
     def _scattered(self, thing: Thing) -> Numbers:
         at = self._scatter(thing.height)
         return at(thing.coverage(at.x_mm, at.y_mm, at.pixel_mm).astype(np.float32))
-
-    @cached_property
-    def _mixed(self) -> Mixed:
-        return Mixed(self.layout, self._pairs, self._scattered)
 
     def _material_plane(self, height: float, clear: float, diffuse: float) -> Plane:
         return blended(self._direct(height), self._scatter(height), clear, diffuse)

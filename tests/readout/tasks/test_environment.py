@@ -1,5 +1,6 @@
 """The Gymnasium environment, by Gymnasium's own checker; and tasks in real time."""
 
+import pickle
 import re
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import pytest
 
 from lumitip.links.twin import published_layout
 from lumitip.tasks import Settings, TaskError
+from lumitip.twin import Twin
 
 pytestmark = pytest.mark.slow
 
@@ -29,6 +31,27 @@ def test_gymnasium_accepts_the_environment() -> None:
             # It asks for a registered id only in order to make other render modes.
             warnings.filterwarnings("ignore", message=".*spec.*")
             check_env(TraceEnv(published_layout(), settings))
+
+
+def test_environments_of_ones_own_twin_run_in_other_processes() -> None:
+    gymnasium = pytest.importorskip("gymnasium")
+    layout = published_layout()
+    envs = gymnasium.make_vec(
+        "lumitip.tasks.environment:Lumitip/TraceCable-v0",
+        2,
+        vectorization_mode="async",
+        vector_kwargs={"context": "spawn"},
+        layout=layout,
+        twin=Twin(layout),
+    )
+    try:
+        first, _ = envs.reset(seed=3)
+    finally:
+        envs.close()
+    from lumitip.tasks.environment import TraceEnv
+
+    alone = pickle.loads(pickle.dumps(TraceEnv(layout, Settings("cable"), twin=Twin(layout))))
+    assert np.array_equal(first[1], alone.reset(seed=4)[0])
 
 
 def test_going_forward_is_rewarded_and_losing_the_line_is_not() -> None:

@@ -98,7 +98,10 @@ def test_every_way_to_compute_a_scene_knows_the_sizes(layout: Layout) -> None:
     """Table, raster and single rays: an edge alone, with a second sheet, and as a polygon."""
     twin, alike = Twin(sized(layout, SIZES)), Twin(layout)
     edges = [HalfPlane(offset_mm=1.0, angle_deg=float(angle)) for angle in range(0, 360, 40)]
-    by_table, by_rays = twin.batch(edges), [twin.calibrated(twin._mixed.light([e])) for e in edges]
+    by_table, by_rays = (
+        twin.batch(edges),
+        [twin.calibrated(twin._mixed().light([e])) for e in edges],
+    )
     covered = np.stack([edge.coverage(*_at(twin)) for edge in edges]).astype(np.float32)
     without = np.sqrt(np.mean((alike.batch(edges) - by_table) ** 2))
     for found in (twin.batch(covered), by_rays):

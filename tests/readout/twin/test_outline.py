@@ -56,7 +56,7 @@ def test_outline_and_raster_agree(
 def test_outline_and_rays_agree(twin: Twin) -> None:
     for degrees, x_mm in ((10.0, 1.0), (70.0, -6.0)):
         polygon = Polygon(turned(degrees, x_mm, 2.0))
-        assert rms(twin.values(polygon), twin.calibrated(twin._mixed.light([polygon]))) < 3.0
+        assert rms(twin.values(polygon), twin.calibrated(twin._mixed().light([polygon]))) < 3.0
 
 
 def test_either_order_of_the_corners_covers_the_same(twin: Twin) -> None:
