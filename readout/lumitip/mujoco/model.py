@@ -85,28 +85,42 @@ def fingers(layout: Layout, urdf: str | Path | None = None, force_n: float = 20.
     return spec
 
 
-def open_fingers(model: mujoco.MjModel, data: mujoco.MjData, opening_mm: float) -> None:
+def open_fingers(
+    model: mujoco.MjModel, data: mujoco.MjData, opening_mm: float, prefix: str = ""
+) -> None:
     """Open the fingers and hold them so: positions, target, and all that follows from them.
 
     Args:
         model: of `fingers`.
         data: its state.
         opening_mm: skin to skin (mm).
+        prefix: with which `fingers` was attached to the model.
 
     Raises:
         MujocoError: if the model has no such joints, or they do not open so far.
     """
-    numbers = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name) for name in _JOINTS]
+    arguments.instance(prefix, str, "prefix", MujocoError)
+    joints = [f"{prefix}{name}" for name in _JOINTS]
+    numbers = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name) for name in joints]
     if min(numbers) < 0:
-        raise MujocoError(f"the model has no joints {' and '.join(_JOINTS)}; `fingers` makes them")
+        raise MujocoError(f"the model has no joints {' and '.join(joints)}; {_remedy(model)}")
     most_mm = 2e3 * float(model.jnt_range[numbers, 1].min())
     opening_mm = arguments.number(
         opening_mm, "opening_mm", 0.0, most=most_mm + 1e-9, error=MujocoError
     )
     data.qpos[model.jnt_qposadr[numbers]] = opening_mm / 2e3
     data.qvel[model.jnt_dofadr[numbers]] = 0.0
-    data.ctrl[model.actuator(ACTUATOR).id] = opening_mm / 2e3
+    data.ctrl[model.actuator(f"{prefix}{ACTUATOR}").id] = opening_mm / 2e3
     mujoco.mj_forward(model, data)
+
+
+def _remedy(model: mujoco.MjModel) -> str:
+    """How to name the fingers of a model."""
+    names = (model.joint(number).name for number in range(model.njnt))
+    prefixes = [name.removesuffix(_JOINTS[0]) for name in names if name.endswith(_JOINTS[0])]
+    if not prefixes:
+        return "`fingers` makes them"
+    return f"it has them with the prefix {' or '.join(map(shown, prefixes))}: pass it as `prefix`"
 
 
 def _of_file(urdf: str | Path) -> mujoco.MjSpec:

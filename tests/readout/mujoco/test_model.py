@@ -68,6 +68,27 @@ def test_two_pairs_in_one_model_and_a_callback_of_ones_own() -> None:
     assert left.min() < 150.0 and np.abs(left - right).max() > 50.0
 
 
+def test_attached_fingers_open_by_their_prefix() -> None:
+    spec = mujoco.MjSpec()
+    spec.option.timestep = 0.001  # as that of the fingers
+    for number, prefix in enumerate(("left/", "right/")):
+        spec.attach(
+            fingers(LAYOUT), prefix=prefix, frame=spec.worldbody.add_frame(pos=[number, 0.0, 0.0])
+        )
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    open_fingers(model, data, 6.0, prefix="right/")
+    for prefix, opening_mm in (("left/", 0.0), ("right/", 6.0)):
+        for side in ("receiver", "emitter"):
+            travel = data.joint(f"{prefix}lumitip_{side}_joint").qpos
+            assert 2e3 * float(travel[0]) == pytest.approx(opening_mm)
+        assert data.ctrl[model.actuator(f"{prefix}{ACTUATOR}").id] == opening_mm / 2e3
+    with pytest.raises(MujocoError, match=r"with the prefix 'left/' or 'right/': pass it as"):
+        open_fingers(model, data, 6.0)
+    with pytest.raises(MujocoError, match=r"no joints lumitip_receiver_joint .* `fingers` makes"):
+        open_fingers(mujoco.MjSpec().compile(), data, 6.0)
+
+
 @pytest.mark.parametrize("radius_mm", [0.5, 2.0])
 def test_the_fingers_close_on_a_body_with_their_force(radius_mm: float) -> None:
     spec = fingers(LAYOUT, force_n=10.0)
