@@ -30,7 +30,7 @@ class Node:
         self.services: dict[str, Callable[..., Any]] = {}
         self.timers: list[Callable[[], None]] = []
         self.groups: dict[str, Any] = {}
-        self.acknowledged = 0
+        self.acknowledged: dict[str, int] = {}
         self.logged: list[tuple[str, str]] = []
         self.destroyed = False
         Node.made.append(self)
@@ -84,7 +84,7 @@ class Node:
                 kept.append(message)
 
         def wait_for_all_acked(_: Any) -> None:
-            self.acknowledged = len(kept)
+            self.acknowledged[topic] = len(kept)
 
         return SimpleNamespace(publish=publish, wait_for_all_acked=wait_for_all_acked)
 

@@ -129,9 +129,19 @@ def test_markers_show_cells_and_lines_and_delete_what_is_gone(active: Any, ros: 
     gone = ros.markers.lines([], ros.ESTIMATE, "estimate", cells.header)
     assert gone.action == gone.DELETE and gone.points == []
     assert all(m.pose.orientation.w == 1.0 for m in marked)
+    lifetimes_s = {m.lifetime.sec + m.lifetime.nanosec * 1e-9 for m in marked}
+    assert lifetimes_s == {0.5}, "RViz shows nothing once the link is cut"
     over = estimate.points[0].z - cells.scale.z / 2
     assert cells.type == cells.CUBE_LIST and over > 1e-4, "lines are over the cells"
     active.on_deactivate(None)
+    (last,) = active.published["~/markers"][-1].markers
+    assert last.action == last.DELETEALL
+
+
+@pytest.mark.parametrize("end", ["on_shutdown", "on_error", "on_deactivate"])
+def test_markers_are_deleted_when_an_active_node_ends(active: Any, end: str) -> None:
+    wait_for(active, "~/markers", 1)
+    assert getattr(active, end)(None) is Returned.SUCCESS
     (last,) = active.published["~/markers"][-1].markers
     assert last.action == last.DELETEALL
 
@@ -210,7 +220,10 @@ def test_a_link_that_fails_for_good_is_fatal_and_ends_the_process(
     (status,) = node.published["/diagnostics"][-1].status
     assert status.level == status.ERROR and "is over" in status.message
     assert node.destroyed and Executor.shut_down
-    assert node.acknowledged == len(node.published["/diagnostics"])
+    for topic in ("/diagnostics", "~/markers"):
+        assert node.acknowledged[topic] == len(node.published[topic]) > 0
+    (last,) = node.published["~/markers"][-1].markers
+    assert last.action == last.DELETEALL, "no contact stays in RViz"
 
 
 def test_a_frame_that_cannot_be_published_is_fatal(

@@ -14,6 +14,7 @@ from lumitip.view.drawn import MISSING
 _METRE = 1e-3
 _SIZE = 0.7  # of a cell, in pitches
 _HIGH_MM, _LINE_MM = 0.2, 0.3
+_LIFETIME_NS = 500_000_000  # RViz shows a marker no longer: a link that is cut shows nothing
 _OVER_MM = 0.4  # of lines over the face, so that no cell hides them
 
 
@@ -54,6 +55,7 @@ def none() -> MarkerArray:
 def _marker(header: Header, namespace: str, kind: int) -> Marker:
     marker = Marker(header=header, ns=namespace, id=0, type=kind, action=Marker.ADD)
     marker.pose.orientation.w = 1.0
+    marker.lifetime.nanosec = _LIFETIME_NS
     return marker
 
 

@@ -44,7 +44,7 @@ PARAMETERS: dict[str, str | bool | float] = {
 """Name and default of each; see README.md."""
 _DIAGNOSTICS_S = 1.0
 _MARKERS_S = 1.0 / 30.0
-_SENDING_S = 0.5  # longest wait for the last diagnostics to be received
+_SENDING_S = 0.5  # longest wait for the last messages to be received
 
 
 class FingertipNode(LifecycleNode):
@@ -109,7 +109,6 @@ class FingertipNode(LifecycleNode):
     def on_deactivate(self, state: State) -> TransitionCallbackReturn:
         """Publish no more, and delete the markers; the link stays."""
         self._pause()
-        self._markers.publish(markers.none())
         return super().on_deactivate(state)
 
     def on_cleanup(self, _: State) -> TransitionCallbackReturn:
@@ -118,7 +117,7 @@ class FingertipNode(LifecycleNode):
         return TransitionCallbackReturn.SUCCESS
 
     def on_shutdown(self, _: State) -> TransitionCallbackReturn:
-        """Disconnect."""
+        """Delete the markers of an active node, and disconnect."""
         self._close()
         return TransitionCallbackReturn.SUCCESS
 
@@ -142,9 +141,13 @@ class FingertipNode(LifecycleNode):
         stamp = self.get_clock().now().to_msg()
         self._diagnostics.publish(health.array(status, stamp))
 
-    def wait_until_received(self) -> None:
-        """Wait until the last diagnostics have been received, for at most half a second."""
-        self._diagnostics.wait_for_all_acked(Duration(seconds=_SENDING_S))
+    def finish(self) -> None:
+        """Publish the last diagnostics and delete the markers; wait until both have been received,
+        for at most half a second each."""
+        self.diagnose()
+        self._pause()
+        for last in (self._diagnostics, self._markers):
+            last.wait_for_all_acked(Duration(seconds=_SENDING_S))
 
     def _open(self) -> Fingertip:
         """Connect; a recording does not play before the node is active."""
@@ -243,6 +246,8 @@ class FingertipNode(LifecycleNode):
             self._stop()
         if self._pace:
             self._pace.stop()
+            if rclpy.ok():  # else publishers are gone
+                self._markers.publish(markers.none())
         self._stop = self._pace = self._published.newest_s = None
 
     def _close(self) -> None:
@@ -270,8 +275,7 @@ def main() -> None:
             executor.spin_once(timeout_sec=0.2)
             failure = node.failure
         if failure:
-            node.diagnose()
-            node.wait_until_received()
+            node.finish()
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     finally:
