@@ -244,6 +244,23 @@ def test_a_recording_that_begins_anew_has_newer_stamps(make_node: Make, tmp_path
     assert stamps_s(f"replay://{path}?speed=0") == pytest.approx(kept, abs=1e-6)
 
 
+def test_diagnostics_take_no_frame_from_a_recording_that_waits(
+    make_node: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node = make_node(url=f"replay://{recorded(tmp_path / 'a.mcap', 30)}?speed=0", estimate=False)
+    node.on_configure(None)
+    delay(node, monkeypatch, 0.02)
+    node.on_activate(None)
+    wait_until(lambda: len(node.published["~/values"]) >= 2)
+    node.on_deactivate(None)
+    for _ in range(30):
+        assert diagnosed(node)[:2] == (b"\0", "the node is not active")
+        time.sleep(0.01)
+    assert not node.failure, "it does not play on"
+    node.on_activate(None)
+    wait_until(lambda: node.failure and len(node.published["~/values"]) > 25)  # of 30
+
+
 def test_deactivating_ends_the_thread_also_of_a_recording_that_waits(
     slow: Any, make_node: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -63,6 +63,9 @@ def _level(now: Condition) -> tuple[bytes, str]:
         return DiagnosticStatus.WARN, "the link is cut, reconnecting"
     if now.recorded and not published.number:
         return DiagnosticStatus.OK, "the recording begins once the node is active"
+    if now.recorded and published.newest_s is None:
+        # Asking for the newest frame would take one from a recording that waits for its reader.
+        return DiagnosticStatus.OK, "the node is not active"
     try:
         tip.latest(stale_s)
     except StaleFrame as error:
