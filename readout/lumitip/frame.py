@@ -43,8 +43,8 @@ class Frame:
     For a legacy device `t_host`, but frames that arrive in one bunch are spaced by the mean period:
     from 0.5 s before `t_host` to a period after it."""
     t_wall: float
-    """`t` as seconds since 1970 (UTC), by the computer's clock; where that is set by more than a
-    second, later frames follow it. Those of one recording do not."""
+    """`t` as seconds since 1970 (UTC), by the computer's clock; where that is set by more than
+    0.05 s, later frames follow it. Those of one recording do not."""
     raw: Codes
     """ADC codes, high is dark, shape `(cells,)`, read-only."""
     bits: int

@@ -21,7 +21,7 @@ from lumitip.values import shown
 CHUNK_BYTES = 2048
 FLUSH_S = 0.2
 TOPIC = "/lumitip/frames"
-_SET_S = 0.5  # a step of the wall clock: that of a link is above it
+_SET_S = 0.025  # a step of the wall clock: that of a link is above it
 
 
 class Writer:

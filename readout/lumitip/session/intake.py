@@ -16,7 +16,9 @@ from lumitip.session.arrivals import ArrivalTime
 from lumitip.session.stats import Counter
 from lumitip.session.timing import DeviceClock, SteadyTime, Timeline
 
-_SET_S = 1.0  # the least step of the computer's clock that is followed
+_SET_S = 0.05  # the least step of the computer's clock that is followed
+_COMPARED_S = 0.005  # longest time to read both clocks: a longer one would look like a step
+_TRIES, _FIRST_TRIES = 5, 100
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,8 @@ class Intake:
         self._fault_since: Fault | None = None
         self._legacy_frames = 0
         self._recorded_offset_s: float | None = None
-        self._wall_s = _wall_offset_s()
+        first_s = _wall_offset_s(_FIRST_TRIES)
+        self._wall_s = time.time() - time.monotonic() if first_s is None else first_s
 
     def reconnected(self) -> None:
         """Note that the link has reconnected."""
@@ -158,11 +161,11 @@ class Intake:
     def _follow_clock(self) -> None:
         """Take over the computer's clock if it was set: small steps are left out, since times of
         frames would go back with them."""
-        offset_s = _wall_offset_s()
-        step_s = offset_s - self._wall_s
+        offset_s = _wall_offset_s(_TRIES)
+        step_s = 0.0 if offset_s is None else offset_s - self._wall_s
         if abs(step_s) > _SET_S:
-            self._wall_s = offset_s
-            detail = f"the computer's clock was set by {step_s:+.1f} s; t_wall follows it"
+            self._wall_s += step_s
+            detail = f"the computer's clock was set by {step_s:+.2f} s; t_wall follows it"
             self._report(LinkEvent("clock", detail))
 
     def _values(self, raw: Codes, bits: int) -> Values:
@@ -185,9 +188,14 @@ class Intake:
             raise _wrong(packet.design, layout, self._source.device_id())
 
 
-def _wall_offset_s() -> float:
-    """Seconds since 1970 at the zero of the monotonic clock."""
-    return time.time() - time.monotonic()
+def _wall_offset_s(tries: int) -> float | None:
+    """Seconds since 1970 at the zero of the monotonic clock; `None` where the computer is too busy
+    to read both clocks at once."""
+    for _ in range(tries):
+        before_s, wall_s, after_s = time.monotonic(), time.time(), time.monotonic()
+        if after_s - before_s < _COMPARED_S:
+            return wall_s - before_s
+    return None
 
 
 def _wrong(
