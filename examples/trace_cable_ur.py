@@ -9,7 +9,7 @@ import sys
 from lumitip.control import LineLaw, Tracer
 from lumitip.estimation import PoseEstimator
 from lumitip.links.twin import published_layout
-from lumitip.robots import ArmLimits, Mount, URArm
+from lumitip.robots import ArmLimits, ArmStopped, Mount, URArm
 from lumitip.tasks import Settings, Task
 from lumitip.tasks.live import LiveTask
 
@@ -26,12 +26,16 @@ limits = ArmLimits(speed_mm_s=1.5 * speed, travel_mm=600.0, stale_s=0.3, watchdo
 # Or Fingertip.open("ble://Lumitip"). The arm comes last, and so is the first to stop.
 with world.open() as tip, URArm(host, mount, limits) as arm:
     before_s = tip.wait_latest(2.0).t
-    for frame in tip.frames(timeout=2.0):
-        if frame is not tip.latest():
-            continue  # a newer one is here already
-        dt_s, before_s = frame.t - before_s, frame.t
-        arm.move(trace(estimator(frame.values, "cable"), dt_s), min(frame.t, frame.t_host))
-        world.command(arm.measured())  # the cable slides through as the arm moves
+    try:
+        for frame in tip.frames(timeout=2.0):
+            if frame is not tip.latest():
+                continue  # a newer one is here already
+            dt_s, before_s = frame.t - before_s, frame.t
+            arm.move(trace(estimator(frame.values, "cable"), dt_s), min(frame.t, frame.t_host))
+            world.command(arm.measured())  # the cable slides through as the arm moves
+    except ArmStopped as stopped:  # also by the tracer, where it has lost the line
+        print(stopped)
 m = world.metrics()
-print(f"{m.reason} after {m.travelled_mm:.0f} mm in {m.seconds:.1f} s, arm: {arm.stopped}")
+why = m.reason or arm.stopped
+print(f"{why} after {m.travelled_mm:.0f} mm in {m.seconds:.1f} s, arm: {arm.stopped}")
 print(f"lateral {m.lateral_rms_mm:.2f} mm rms, angle {m.angle_rms_deg:.1f}° rms (simulated)")

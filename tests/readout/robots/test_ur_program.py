@@ -1,9 +1,12 @@
 """`URArm` as the program uses it, over a process that only plays the one of ur_rtde."""
 
+import runpy
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
 
 import pytest
 
@@ -21,9 +24,18 @@ for line in sys.stdin:
 """
 
 
-def _plays() -> "subprocess.Popen[str]":
+STOPS = PLAYS.replace(
+    "for line in sys.stdin:",
+    """for number, line in enumerate(sys.stdin):
+    if number == 20:
+        print('{"stopped": "lost", "detail": "", "trace": ""}', flush=True)
+        break""",
+)
+
+
+def _plays(program: str = PLAYS) -> "subprocess.Popen[str]":
     pipe = subprocess.PIPE
-    return subprocess.Popen([sys.executable, "-c", PLAYS], stdin=pipe, stdout=pipe, text=True)
+    return subprocess.Popen([sys.executable, "-c", program], stdin=pipe, stdout=pipe, text=True)
 
 
 @pytest.fixture
@@ -38,6 +50,18 @@ def test_an_arm_that_was_stopped_has_no_measured_motion(arm: URArm) -> None:
     arm.move(Command(state="stop", reason="lost"), 0.0)
     with pytest.raises(ArmStopped, match="the tracer lost the line"):
         arm.measured()
+
+
+def test_the_example_says_why_the_arm_was_stopped(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(ur, "_started", partial(_plays, STOPS))
+    monkeypatch.setattr(sys, "argv", ["trace_cable_ur.py", "127.0.0.1", "40"])
+    runpy.run_path(str(Path(__file__).parents[3] / "examples/trace_cable_ur.py"))
+    why, travelled, errors = capsys.readouterr().out.splitlines()
+    assert why.startswith("the arm was stopped: the tracer lost the line")
+    assert travelled.startswith("lost after ") and travelled.endswith("arm: lost")
+    assert errors.startswith("lateral ")
 
 
 def test_a_frame_of_the_future_does_not_move_it(arm: URArm) -> None:
