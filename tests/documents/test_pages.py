@@ -1,5 +1,6 @@
 """README and the pages of docs: links, the map of all pages, length, and nothing said twice."""
 
+import re
 from itertools import combinations
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from markdown_pages import (
     broken_links,
     linked_files,
     long_lines,
+    sections,
     sentences,
 )
 
@@ -28,6 +30,20 @@ def _name(page: Path) -> str:
 @pytest.mark.parametrize("page", PAGES, ids=_name)
 def test_every_link_and_anchor_of_a_page_resolves(page: Path) -> None:
     assert broken_links(page, page.read_text("utf-8")) == []
+
+
+def test_simulated_tasks_are_linked_to_the_section_on_them() -> None:
+    found = [
+        (page.parent / file, anchor)
+        for page in DOCS
+        for file, anchor in re.findall(
+            r"\[simulated tasks[^]]*\]\(([^)#]+)#?([^)]*)\)", page.read_text("utf-8")
+        )
+    ]
+    assert found
+    for page, anchor in found:
+        (section,) = [s for s in sections(page.read_text("utf-8")) if s.anchor == anchor]
+        assert "Gymnasium environments" in " ".join(section.texts), page
 
 
 def test_a_damaged_link_is_found() -> None:
