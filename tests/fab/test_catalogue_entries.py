@@ -24,7 +24,7 @@ FIELDS = (
 )
 LEAST = {"leds": 5, "photodetectors": 4, "films": 2, "silicones": 2, "printers": 4}
 OWN_PINS = {"arduino_nano_33_ble", "arduino_nano_rp2040_connect", "arduino_nano_esp32"}
-COOL = {"emitter.current_ma": 10.0, "emitter.resistor": "1206"}
+COOL = {"emitter.current_ma": 10.0, "emitter.resistor": "1210"}
 NEEDED: dict[str, dict[str, Any]] = {
     "VSMY1850": COOL | {"emitter.string_leds": 11},
     "VSMB1940X01": COOL,
