@@ -74,7 +74,7 @@ def boards(
 ) -> Boards:
     """`boards("dense")`: a folder with a preset's boards and design. Do not change it."""
     return lambda preset: (
-        once(preset, lambda out: _write(designs(preset), out))
+        once(f"boards-{preset}", lambda out: _write(designs(preset), out))
         if preset in ("small", "switched", DEFAULT)
         else built(preset)
     )
