@@ -3,14 +3,14 @@
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
-from build123d import Axis, Box, Compound, Cylinder, Location, Shape, Solid, export_brep
+from build123d import Axis, Compound, Cylinder, Location, Shape, export_brep
 from OCP.Interface import Interface_Static
 from OCP.ShapeUpgrade import ShapeUpgrade_ShapeDivideClosed
 from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
 
+from fingertip_shapes import block, bore, box, figures_of, plain
 from lumitip_fab.catalogue.grippers import Gripper
 from lumitip_fab.cli import main
 from lumitip_fab.config.load import Input
@@ -49,17 +49,13 @@ def found(file: Path, config: Input) -> Proposal:
     return propose(file, read_solid(file), config.catalogue.fasteners)
 
 
-def figures_of(shape: Shape, config: Input) -> dict[str, Any]:
-    proposal = propose(Path("part.step"), shape, config.catalogue.fasteners)
-    return {name: figure.value for name, figure in proposal.figures.items()}
-
-
 GIVEN = (
     *("bolt", "bolt_spacing_mm", "bolt_hole_mm", "counterbore_mm", "land_mm", "tilt_deg"),
-    *("block_width_mm", "block_corner_mm", "block_back_w_mm", "bolt_w_mm"),
+    *("block_corner_mm", "block_back_w_mm", "bolt_w_mm"),
     *("pins.hole_mm", "pins.spacing_mm", "pins.depth_mm"),
 )
-"""Figures of an entry that the backing shows: its board stands where a maker's pad is."""
+"""Figures of an entry that the backing shows: its board stands where a maker's pad is. Its ends
+stand beside the block, on the mount plane, so that the width of the block is not certain."""
 
 
 @pytest.mark.parametrize(
@@ -73,6 +69,7 @@ def test_a_printed_finger_has_the_figures_of_its_entry(
     values = {figure: proposed.value for figure, proposed in proposal.figures.items()}
     assert values.pop("pad_w_mm") == gripper.bolt_w_mm
     assert values == {n: v for n in GIVEN if (v := value_of(gripper, n)) is not None}
+    assert proposal.open == {"block_width_mm"}
 
 
 def test_the_part_may_lie_anywhere_and_in_inches(
@@ -94,16 +91,6 @@ def test_the_part_may_lie_anywhere_and_in_inches(
     assert figures_of(read_solid(file), config) == figures_of(solid, config)
 
 
-def block(*cut: Shape) -> Solid:
-    """A fingertip of 24 x 16 x 50 mm: it stands on z = 0, its pad is at y = -8."""
-    body = Box(24, 16, 50).moved(Location((0, 0, 25)))
-    return body - list(cut) if cut else body
-
-
-def bore(x: float, y: float, diameter: float, low: float, high: float) -> Shape:
-    return Cylinder(diameter / 2, high - low).moved(Location((x, y, (low + high) / 2)))
-
-
 def test_holes_of_two_half_cylinders_are_whole(config: Input, backing_step: Write) -> None:
     solid = read_solid(backing_step("wsg50", config.catalogue.grippers["wsg50"]))
     divided = ShapeUpgrade_ShapeDivideClosed(solid.wrapped)
@@ -114,7 +101,7 @@ def test_holes_of_two_half_cylinders_are_whole(config: Input, backing_step: Writ
 
 
 def test_plain_holes_leave_the_counterbore_open(config: Input) -> None:
-    values = figures_of(block(bore(-7, 2, 4.5, -1, 51), bore(7, 2, 4.5, -1, 51)), config)
+    values = figures_of(block(*plain(-7, 7)), config, pad=1)
     assert values == {
         "bolt_hole_mm": 4.5,
         "bolt": "M4",
@@ -127,9 +114,9 @@ def test_plain_holes_leave_the_counterbore_open(config: Input) -> None:
     }
 
 
-def test_chamfers_do_not_make_the_block_narrower(config: Input) -> None:
-    whole = block(bore(-7, 2, 4.5, -1, 51), bore(7, 2, 4.5, -1, 51))
-    foot = [edge for edge in whole.edges() if edge.center().Z < 1e-6 and edge.length > 15]
+def test_chamfers_change_no_figure(config: Input) -> None:
+    whole = block(*plain(-7, 7))
+    foot = [edge for edge in whole.edges() if edge.center().Z < 1e-6]
     assert figures_of(whole.chamfer(0.8, None, foot), config) == figures_of(whole, config)
 
 
@@ -137,8 +124,7 @@ def test_blind_holes_are_pins_if_they_are_in_the_mount_face(config: Input) -> No
     bolt = [bore(0, 1, 5.4, -1, 51), bore(0, 1, 9.5, 6, 51)]
     pins = [bore(x, 1, 3.0, -1, 4) for x in (-8, 8)]
     others = [bore(x, 1, 2.5, 40, 51) for x in (-9, 9)]
-    side = Cylinder(1.5, 30).rotate(Axis.Y, 90).moved(Location((0, -4, 30)))
-    values = figures_of(block(*bolt, *pins, *others, side), config)
+    values = figures_of(block(*bolt, *pins, *others), config)
     assert values["pins.hole_mm"] == 3.0
     assert values["pins.spacing_mm"] == 16.0
     assert values["pins.depth_mm"] == 4.0
@@ -146,38 +132,16 @@ def test_blind_holes_are_pins_if_they_are_in_the_mount_face(config: Input) -> No
     assert "bolt_spacing_mm" not in values
 
 
-def test_four_bolts_are_no_entry(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    four = [bore(x, y, 3.4, -1, 51) for x in (-8, 8) for y in (-4, 4)]
-    file = tmp_path / "four.step"
-    file.write_bytes(step(block(*four), "tip"))
-    out = tmp_path / "out"
-    assert main(["gripper", "new", "jaw", "--from-step", str(file), "--out", str(out)]) == 0
-    printed = capsys.readouterr().out
-    assert "one bolt or two; 4 equal holes were found" in printed
-    assert 'bolt_spacing_mm = "?"' in (out / "jaw.toml").read_text(encoding="utf-8")
-
-
-def test_a_plate_with_holes_across_is_doubted(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    plate = Box(20, 60, 8) - [bore(x, 20, 4.5, -9, 9) for x in (-6, 6)]
-    file = tmp_path / "plate.step"
-    file.write_bytes(step(plate, "tip"))
-    out = ["--out", str(tmp_path / "out")]
-    assert main(["gripper", "new", "jaw", "--from-step", str(file), *out]) == 0
-    assert "If its bolts do not run along the finger" in capsys.readouterr().out
-
-
 def test_several_solids_are_doubted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    tip = block(bore(-7, 2, 4.5, -1, 51), bore(7, 2, 4.5, -1, 51))
-    rubber = Box(24, 3, 30).moved(Location((0, -10, 30)))
+    tip = block(*plain(-7, 7))
+    rubber = box((-12, 12), (-11.5, -8.5), (15, 45))
     file = tmp_path / "two.step"
     file.write_bytes(step(Compound([tip, rubber]), "tip"))
     out = ["--out", str(tmp_path / "out")]
     assert main(["gripper", "new", "jaw", "--from-step", str(file), *out]) == 0
     printed = capsys.readouterr().out
     assert "The file has 2 solids, which were read as one part." in printed
-    assert "Another outer face is of similar size" in printed  # rubber in front, block behind
+    assert "Which face grips is not certain" in printed  # rubber in front, block behind
 
 
 def test_what_was_found_is_shown_and_filled_in(
@@ -198,7 +162,6 @@ def test_what_was_found_is_shown_and_filled_in(
     assert picture.count('stroke="#c0392b"') == 4  # rings of both holes, mount face, pad
     assert ">1, 2: bolt, ⌀ 6.10, 4.30, 7.40<" in picture
     assert picture in (tmp_path / "jaw.html").read_text(encoding="utf-8")
-    assert (tmp_path / "jaw_gauge.stl").is_file()
 
 
 def test_a_found_text_is_toml() -> None:
@@ -264,7 +227,7 @@ def test_a_solid_that_is_no_fingertip_is_one_error(
 def test_a_freecad_file_with_one_shape_is_read(
     config: Input, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    tip = block(bore(-7, 2, 4.5, -1, 51), bore(7, 2, 4.5, -1, 51))
+    tip = block(*plain(-7, 7))
     export_brep(tip, tmp_path / "tip.brp")
     for count in (1, 2):
         with zipfile.ZipFile(tmp_path / f"{count}.FCStd", "w") as archive:

@@ -20,12 +20,19 @@ if TYPE_CHECKING:
 _NAME = re.compile(r"[a-z0-9]+(_[a-z0-9]+)*")
 _FINGER = "presets/published.toml"
 _GAUGE = ".stl"
+_NUMBERS = {
+    "bolts": re.compile(r"[1-9]\d{0,3}(,[1-9]\d{0,3})*"),
+    "mount": re.compile(r"[1-9]\d{0,3}"),
+    "pad": re.compile(r"[1-9]\d{0,3}"),
+}
+"""Options that name holes and faces of a STEP file, and their form."""
 
 
 def new(options: argparse.Namespace) -> int:
     """Write page and answers file, or from the answers the entry; then say what is next."""
     from lumitip_fab.config.load import load
     from lumitip_fab.grippers import wizard
+    from lumitip_fab.grippers.ways import Named
 
     _refuse_options(options)
     name, out = options.name, _folder(options)
@@ -36,7 +43,9 @@ def new(options: argparse.Namespace) -> int:
         made = wizard.finished(name, own, options.answers)
     else:
         if options.from_step:
-            tip = wizard.read_fingertip(options.from_step, own.catalogue)
+            (mount, *_), (pad, *_) = _numbers(options.mount or "0"), _numbers(options.pad or "0")
+            named = Named(_numbers(options.bolts or ""), mount, pad)
+            tip = wizard.read_fingertip(options.from_step, own.catalogue, named)
         made = wizard.started(name, published, own.catalogue, options.like, tip)
     files = {out / file: data for file, data in made.items()}
     added = {}
@@ -46,6 +55,10 @@ def new(options: argparse.Namespace) -> int:
     _write(files, added, options.replace)
     _report(options, [str(path) for path in (*files, *added)], tip)
     return 0
+
+
+def _numbers(text: str) -> tuple[int, ...]:
+    return tuple(map(int, text.split(","))) if text else ()
 
 
 def _folder(options: argparse.Namespace) -> Path:
@@ -66,6 +79,12 @@ def _refuse_options(options: argparse.Namespace) -> None:
         faults.append(("--like", texts["like_answers"]))
     if options.add and not options.file:
         faults.append(("--add", texts["add_file"]))
+    for option, form in _NUMBERS.items():
+        value = getattr(options, option)
+        if value is not None and not options.from_step:
+            faults.append((f"--{option}", texts["named_step"]))
+        elif value is not None and not form.fullmatch(value):
+            faults.append((f"--{option}", texts["named_form"].format(value=value)))
     if faults:
         raise InputError(Problem("lumitip-fab gripper", 0, *fault) for fault in faults)
 
@@ -97,6 +116,8 @@ def _report(options: argparse.Namespace, written: list[str], tip: "Fingertip | N
         return
     if tip:
         _print_found(tip)
+    for note in tip.notes() if tip else ():
+        OUT.print(note)
     for path in written:
         OUT.print(path)
     step = "answers" if not options.answers else "use" if options.add else "add"
@@ -106,7 +127,7 @@ def _report(options: argparse.Namespace, written: list[str], tip: "Fingertip | N
 
 
 def _print_found(tip: "Fingertip") -> None:
-    """Print holes, faces and figures as tables, and what is doubtful."""
+    """Print holes, faces and figures as tables."""
     headings = (("found", "size", "at u, w (mm)"), ("figure", "value", "from"))
     figures = ((n, f"{f.value}", f.where) for n, f in tip.proposal.figures.items())
     for heading, rows in zip(headings, (tip.proposal.rows(), figures), strict=True):
@@ -117,5 +138,3 @@ def _print_found(tip: "Fingertip") -> None:
             table.add_row(*row)
         OUT.print(table)
         OUT.print()
-    for note in tip.notes():
-        OUT.print(note)

@@ -1,7 +1,8 @@
 """Round holes and plane faces of a solid, whatever program drew it."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from build123d import Face, GeomType, Shape
@@ -37,6 +38,15 @@ class Cylinder:
     hollow: bool
     """Whether the material is outside."""
 
+    def moved(self, matrix: Vector) -> "Cylinder":
+        """The same, moved by a rigid 4x4 matrix."""
+        axis, point = matrix[:3, :3] @ self.axis, _points(matrix, self.foot)
+        along = float(axis @ point)
+        foot, ends = point - axis * along, (self.low_mm + along, self.high_mm + along)
+        if axis @ _FORWARD < 0:
+            axis, ends = -axis, (-ends[1], -ends[0])
+        return replace(self, axis=axis, foot=foot, low_mm=ends[0], high_mm=ends[1])
+
 
 @dataclass(frozen=True, eq=False)
 class Hole:
@@ -71,29 +81,101 @@ class Hole:
         """Its largest diameter."""
         return max(piece.diameter_mm for piece in self.pieces)
 
+    def moved(self, matrix: Vector) -> "Hole":
+        """The same, moved by a rigid 4x4 matrix."""
+        pieces = tuple(piece.moved(matrix) for piece in self.pieces)
+        if (matrix[:3, :3] @ self.axis) @ _FORWARD < 0:
+            return Hole(pieces[::-1], self.open_high, self.open_low)
+        return Hole(pieces, self.open_low, self.open_high)
+
 
 @dataclass(frozen=True, eq=False)
 class PlaneFace:
-    """A plane face."""
+    """All faces in one plane with the material on the same side."""
 
     normal: Vector
     """Unit vector out of the material."""
     offset_mm: float
     """Distance of the plane from the origin along its normal."""
-    corners: Vector
-    """Its edges as points, shape `(n, 3)`."""
+    pieces: tuple[Vector, ...]
+    """The edges of each face as points, shape `(n, 3)`."""
     area_mm2: float
+
+    @cached_property
+    def corners(self) -> Vector:
+        """The edges of all as points, shape `(n, 3)`."""
+        return np.concatenate(self.pieces)
+
+    def moved(self, matrix: Vector) -> "PlaneFace":
+        """The same, moved by a rigid 4x4 matrix."""
+        normal = matrix[:3, :3] @ self.normal
+        pieces = tuple(_points(matrix, piece) for piece in self.pieces)
+        return PlaneFace(normal, float(normal @ pieces[0][0]), pieces, self.area_mm2)
+
+    def around(self, points: Vector) -> "PlaneFace":
+        """Those of its faces that one of some points is in, by the boxes round them."""
+        boxes = (
+            (piece.min(axis=0) - NEAR_MM, piece.max(axis=0) + NEAR_MM) for piece in self.pieces
+        )
+        inside = [((low < points) & (points < high)).all(axis=1).any() for low, high in boxes]
+        kept = tuple(piece for piece, each in zip(self.pieces, inside, strict=True) if each)
+        return replace(self, pieces=kept or self.pieces)
+
+
+@dataclass(frozen=True, eq=False)
+class Features:
+    """Round holes, plane faces and cylinders of a solid; holes and faces have their numbers from
+    their order, wherever the solid lies."""
+
+    holes: tuple[Hole, ...]
+    faces: tuple[PlaneFace, ...]
+    """The largest first."""
+    cylinders: tuple[Cylinder, ...]
+
+    def moved(self, matrix: Vector) -> "Features":
+        """The same, moved by a rigid 4x4 matrix."""
+        return Features(
+            tuple(hole.moved(matrix) for hole in self.holes),
+            tuple(face.moved(matrix) for face in self.faces),
+            tuple(cylinder.moved(matrix) for cylinder in self.cylinders),
+        )
+
+    def reach(self, direction: Vector) -> tuple[float, float]:
+        """Where the edges of its plane faces begin and end along a direction."""
+        along = np.concatenate([face.corners @ direction for face in self.faces])
+        return float(along.min()), float(along.max())
+
+    def outer(self, face: PlaneFace) -> bool:
+        """Whether the whole part lies behind a face."""
+        return self.reach(face.normal)[1] <= face.offset_mm + NEAR_MM
+
+
+def features(shape: Shape) -> Features:
+    """What a solid has."""
+    found = cylinders(shape)
+    return Features(holes(shape, found), planes(shape), found)
 
 
 def planes(shape: Shape) -> tuple[PlaneFace, ...]:
-    """Every plane face, the largest first."""
-    found = []
+    """Every plane with a face in it, the largest first."""
+    joined: list[PlaneFace] = []
     for face in shape.faces().filter_by(GeomType.PLANE):
         normal = _unit(_array(face.normal_at()))
         edges = [edge.positions([k / 8 for k in range(9)]) for edge in face.edges()]
         corners = np.array([tuple(point) for points in edges for point in points])
-        found.append(PlaneFace(normal, float(normal @ corners[0]), corners, face.area))
-    return tuple(sorted(found, key=lambda plane: -plane.area_mm2))
+        one = PlaneFace(normal, float(normal @ corners[0]), (corners,), face.area)
+        same = next((k for k, other in enumerate(joined) if _coplanar(other, one)), None)
+        if same is None:
+            joined.append(one)
+        else:
+            pieces, area = joined[same].pieces + one.pieces, joined[same].area_mm2 + one.area_mm2
+            joined[same] = replace(joined[same], pieces=pieces, area_mm2=area)
+    return tuple(sorted(joined, key=lambda plane: -round(plane.area_mm2, 2)))
+
+
+def _coplanar(a: PlaneFace, b: PlaneFace) -> bool:
+    near = np.abs(b.corners @ a.normal - a.offset_mm).max() < NEAR_MM
+    return bool(near) and float(a.normal @ b.normal) > PARALLEL
 
 
 def cylinders(shape: Shape) -> tuple[Cylinder, ...]:
@@ -105,14 +187,11 @@ def cylinders(shape: Shape) -> tuple[Cylinder, ...]:
             joined.append(one)
             continue
         other = joined[same]
-        joined[same] = Cylinder(
-            other.axis,
-            other.foot,
-            other.diameter_mm,
-            min(other.low_mm, one.low_mm),
-            max(other.high_mm, one.high_mm),
-            other.turn_deg + one.turn_deg,
-            other.hollow,
+        joined[same] = replace(
+            other,
+            low_mm=min(other.low_mm, one.low_mm),
+            high_mm=max(other.high_mm, one.high_mm),
+            turn_deg=other.turn_deg + one.turn_deg,
         )
     return tuple(joined)
 
@@ -188,6 +267,10 @@ def _inside(shape: Shape, point: Vector) -> bool:
     classifier = BRepClass3d_SolidClassifier(shape.wrapped)
     classifier.Perform(gp_Pnt(*point.tolist()), 1e-6)
     return bool(classifier.State() == TopAbs_State.TopAbs_IN)
+
+
+def _points(matrix: Vector, points: Vector) -> Vector:
+    return np.asarray(points @ matrix[:3, :3].T + matrix[:3, 3])
 
 
 def _unit(vector: Vector) -> Vector:

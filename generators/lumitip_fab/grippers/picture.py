@@ -56,10 +56,10 @@ def _mark_side(
     end = page(high_h + beyond, 0)
     sheet.lines([line(page(low_h - beyond, 0), end)], "axis")
     names = [("bolts", end), ("mount face", page(0, high_w + beyond))]
-    for face in proposal.pads[:1]:
+    for name, face in proposal.pads.items():
         pad = face.corners
         first, last = pad[pad[:, 2].argmin()], pad[pad[:, 2].argmax()]
         ends = page(first[2], first[1]), page(last[2], last[1])
         sheet.lines([line(*ends)], "mark")
-        names.append(("pad", ends[1]))
+        names.append((name, ends[1]))
     pointers(sheet, names, end[0] + 10.0, -scale * low_w + 10.0)

@@ -1,6 +1,5 @@
-"""Figures of a gripper from its maker's fingertip: mount face, bolts, pins, pad."""
+"""Figures of a gripper that its maker's fingertip shows beyond doubt."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,284 +8,158 @@ import numpy as np
 from build123d import Shape
 
 from lumitip_fab.catalogue.materials import Fastener
-from lumitip_fab.grippers.features import (
-    NEAR_MM,
-    PARALLEL,
-    Hole,
-    PlaneFace,
-    Vector,
-    cylinders,
-    holes,
-    parallel,
-    planes,
-)
-from lumitip_fab.grippers.reading import refusal
+from lumitip_fab.grippers.features import Features, Hole, PlaneFace, features, parallel
+from lumitip_fab.grippers.figures import TEXTS
+from lumitip_fab.grippers.measures import UPRIGHT, Measured, Proposed, measured
+from lumitip_fab.grippers.ways import NOTHING, Named, Way, in_words, ways_of
 from lumitip_fab.parts.shapes import placed
+from lumitip_fab.text import table_of
 
-LEAST_BOLT_MM = 2.0  # diameter of a bolt's hole
-MOST_LEAN_DEG = 10.0  # of the pad against the bolts
-STEP_MM = 0.5  # between the diameters of a hole and its counterbore, at least
-CUT_MM = 2.0  # of the mount face's edges by chamfers, at most
-_SIDE = 0.02  # sine of the angle below which a normal is square to the bolts' row
-
-
-@dataclass(frozen=True)
-class Proposed:
-    """A figure as the fingertip has it."""
-
-    value: float | str
-    where: str
-    """What it was read from."""
+_NEAR = 0.015  # between figures that are the same
 
 
 @dataclass(frozen=True, eq=False)
 class Proposal:
-    """A fingertip in the mount frame, and the figures that it shows.
+    """A fingertip in the mount frame, and the figures that it shows beyond doubt: those on which
+    all ways to read it agree.
 
     The frame's origin is between the bolts, on the mount face; u is x, to the right along the row
-    of bolts, w is y, away from the pad, and h is z, along the bolts into the fingertip.
+    of bolts, w is y, away from the pad, and h is z, along the bolts into the fingertip. It is that
+    of the likeliest way, as are bolts, pins and faces.
     """
 
     shape: Shape
-    holes: tuple[Hole, ...]
-    bolts: tuple[int, ...]
-    """Which of the holes are for bolts."""
-    pins: tuple[int, ...]
-    """Which are for locating pins."""
-    mount: PlaneFace
-    pads: tuple[PlaneFace, ...]
-    """What may be the pad: the largest face first, then those of half its size or more."""
+    seen: Features
+    way: Way
+    ways: tuple[Way, ...]
     figures: Mapping[str, Proposed]
+    open: frozenset[str]
+    """Figures that stay open because ways differ, or for what is noted."""
+    notes: tuple[str, ...]
+    """What is doubtful, and what to do."""
+
+    @property
+    def holes(self) -> tuple[Hole, ...]:
+        """Its round holes."""
+        return self.seen.holes
+
+    @property
+    def pads(self) -> dict[str, PlaneFace]:
+        """The pad, or by their numbers all faces that may be it."""
+        found = dict.fromkeys(w.pad for w in self._alike() if w.pad is not None)
+        return {
+            "pad" if len(found) == 1 else f"face {k + 1}, pad?": self.seen.faces[k] for k in found
+        }
+
+    def _alike(self) -> Iterator[Way]:
+        return (w for w in self.ways if (w.bolts, w.mount) == (self.way.bolts, self.way.mount))
 
     def rows(self) -> Iterator[tuple[str, str, str]]:
-        """Every hole and both faces: name, size, place."""
+        """The part, every hole, mount face and pad: name, size, place."""
+        size = self.shape.bounding_box().size
+        yield "part", f"{size.X:.2f} x {size.Y:.2f} x {size.Z:.2f} mm", ""
         for number, hole in enumerate(self.holes):
             at = "not along the bolts"
             if upright(hole):
                 at = ", ".join(f"{x + 0.0:.2f}" for x in np.round(hole.foot[:2], 2))
             yield f"hole {number + 1}", self.words(number), at
-        for name, face in (("mount face", self.mount), *(("pad", p) for p in self.pads[:1])):
-            wide, *long = np.ptp(face.corners, axis=0)
-            yield name, f"{wide:.2f} wide, {max(long):.2f} long", ""
+        mounts = dict.fromkeys(w.mount for w in self.ways if w.bolts == self.way.bolts)
+        faces = {
+            "mount face" if len(mounts) == 1 else f"face {k + 1}, mount?": self.seen.faces[k]
+            for k in mounts
+        }
+        for name, face in {**faces, **self.pads}.items():
+            wide, deep, long = np.ptp(face.corners, axis=0)
+            axis = int(np.abs(face.normal).argmax())
+            middle = float(face.corners[:, axis].mean())
+            sides = (deep, wide, wide)[axis], (long, long, deep)[axis]
+            place = "" if face is self.seen.faces[self.way.mount] else f"{'uwh'[axis]} {middle:.2f}"
+            yield name, f"{sides[0]:.2f} wide, {sides[1]:.2f} long", place
 
     def words(self, number: int) -> str:
         """A hole in words: use, diameters from the mount face on, ends."""
-        hole = self.holes[number]
-        use = "bolt, " if number in self.bolts else "pin, " if number in self.pins else ""
+        hole, doubt = self.holes[number], "?" if len({w.bolts for w in self.ways}) > 1 else ""
+        uses = (("bolt", self.way.bolts), ("pin", self.way.pins))
+        use = "".join(f"{name}{doubt}, " for name, holes in uses if number in holes)
         sizes = ", ".join(f"{piece.diameter_mm:.2f}" for piece in hole.pieces)
         return f"{use}⌀ {sizes}, {'through' if hole.through else 'blind'}"
 
 
 def upright(hole: Hole) -> bool:
     """Whether a hole of a proposal is parallel to the bolts."""
-    return parallel(hole.axis, np.array([0.0, 0.0, 1.0]))
+    return parallel(hole.axis, UPRIGHT)
 
 
-def propose(file: Path, shape: Shape, fasteners: Mapping[str, Fastener]) -> Proposal:
+def propose(
+    file: Path, shape: Shape, fasteners: Mapping[str, Fastener], named: Named = NOTHING
+) -> Proposal:
     """Find mount face, bolts, pins and pad.
 
     Args:
         file: that was read, for messages.
         shape: its solids.
         fasteners: threads with their clearance holes.
+        named: holes and faces whose use the user names.
 
     Raises:
-        InputError: if no hole goes through, or none ends in a face square to it.
+        InputError: if no hole goes through, none ends in a face square to it, or holes or faces
+            that are named cannot have that use.
     """
-    moved = placed(shape, _look(file, shape).to_mount())
-    seen = _look(file, moved)
-    figures = {**_of_bolts(seen, fasteners), **_of_pins(seen), **_of_faces(seen, moved)}
-    return Proposal(moved, seen.holes, seen.bolts, seen.pins, seen.mount, seen.pads, figures)
+    ways = ways_of(file, features(shape), named)
+    seen = [way.seen.moved(way.to_mount()) for way in ways]
+    found = [measured(way, each, fasteners) for way, each in zip(ways, seen, strict=True)]
+    first = found[0].figures
+    figures = {n: f for n, f in first.items() if all(_same(each, found[0], [n]) for each in found)}
+    every = {name for each in found for name in (*each.figures, *each.open)}
+    texts = table_of(TEXTS)["found"]
+    notes = [texts[name].format(**values) for name, values in _notes(ways, found).items()]
+    moved = placed(shape, ways[0].to_mount())
+    left = frozenset(every - set(figures))
+    return Proposal(moved, seen[0], ways[0], ways, figures, left, tuple(notes))
 
 
-@dataclass(frozen=True, eq=False)
-class _Seen:
-    """What a fingertip has, wherever it lies."""
-
-    holes: tuple[Hole, ...]
-    faces: tuple[PlaneFace, ...]
-    bolts: tuple[int, ...]
-    mount: PlaneFace
-    pins: tuple[int, ...]
-    row: Vector | None
-    """Unit vector from one bolt to the other, or from pin to pin."""
-    pads: tuple[PlaneFace, ...]
-
-    def to_mount(self) -> Vector:
-        """From the file's coordinates to the mount frame (4x4)."""
-        h = -self.mount.normal
-        back = -self.pads[0].normal if self.pads else np.eye(3)[np.abs(h).argmin()]
-        w = np.cross(h, self.row) if self.row is not None else back - h * (back @ h)
-        w = w / np.linalg.norm(w) * (1.0 if w @ back >= 0 else -1.0)
-        matrix = np.eye(4)
-        matrix[:3, :3] = np.cross(w, h), w, h
-        feet = [_foot(self.holes[k], self.mount) for k in self.bolts]
-        matrix[:3, 3] = -matrix[:3, :3] @ np.mean(feet, axis=0)
-        return matrix
+def _same(a: Measured, b: Measured, names: Sequence[str]) -> bool:
+    """Whether two ways have the same figures."""
+    return all(_near(a.figures.get(name), b.figures.get(name)) for name in names)
 
 
-def _look(file: Path, shape: Shape) -> _Seen:
-    found, faces = holes(shape, cylinders(shape)), planes(shape)
-    bolts = _bolts(found)
-    if not bolts:
-        raise refusal(file, "step_holes", count=len(found), least=LEAST_BOLT_MM)
-    mount = _mount(found[bolts[0]], faces)
-    if mount is None:
-        raise refusal(file, "step_face", diameter=found[bolts[0]].narrow_mm)
-    pins = _pins(found, bolts, mount)
-    pair = next((pair for pair in (bolts, pins) if len(pair) == 2), None)
-    row = None
-    if pair:
-        a, b = (_foot(found[k], mount) for k in pair)
-        row = (b - a) / np.linalg.norm(b - a)
-    return _Seen(found, faces, bolts, mount, pins, row, _pads(faces, -mount.normal, row))
+def _near(a: Proposed | None, b: Proposed | None) -> bool:
+    if a is None or b is None:
+        return a is b
+    if isinstance(a.value, str) or isinstance(b.value, str):
+        return a.value == b.value
+    return abs(a.value - b.value) < _NEAR
 
 
-def _bolts(found: Sequence[Hole]) -> tuple[int, ...]:
-    """The largest set of equal through holes; with counterbores, if any has one."""
-    through = [k for k, h in enumerate(found) if h.through and h.narrow_mm >= LEAST_BOLT_MM]
-    stepped = [k for k in through if found[k].wide_mm - found[k].narrow_mm >= STEP_MM]
-    sets = [_alike(found, stepped or through, k) for k in stepped or through]
-    return max(sets, key=lambda s: (len(s), found[s[0]].narrow_mm), default=())
+def _notes(ways: Sequence[Way], found: Sequence[Measured]) -> dict[str, dict[str, object]]:
+    """Names of texts with their values: which choice has to be named, and all other doubts."""
+    sets = list(dict.fromkeys(way.bolts for way in ways))
+    if len(sets) > 1:
+        return {"bolts": {"sets": "; ".join(map(in_words, sets)), "first": in_words(sets[0])}}
+    notes: dict[str, dict[str, object]] = {}
+    mounts = _differ([way.mount for way in ways], [way.pad for way in ways], found)
+    pads = _differ([way.pad for way in ways], [way.mount for way in ways], found)
+    for name, numbers in (("mounts", mounts), ("pads", pads)):
+        if numbers:
+            notes[name] = {"faces": in_words(numbers), "first": numbers[0] + 1}
+    for each in found:
+        notes |= each.notes
+    return notes
 
 
-def _alike(found: Sequence[Hole], among: Sequence[int], to: int) -> tuple[int, ...]:
-    """The holes with the direction and diameters of one of them."""
-    sizes = np.array([(hole.narrow_mm, hole.wide_mm) for hole in found])
-    same = np.abs(sizes - sizes[to]).max(axis=1) < NEAR_MM
-    return tuple(k for k in among if same[k] and parallel(found[k].axis, found[to].axis))
+def _differ(
+    ours: Sequence[int | None], others: Sequence[int | None], found: Sequence[Measured]
+) -> list[int]:
+    """The faces of one choice, if another of them changes figures while the other choice stays."""
+    names = [name for each in found for name in each.figures]
+    beside = {face: {b for a, b in zip(ours, others, strict=True) if a == face} for face in ours}
 
+    def comparable(a: int, b: int) -> bool:
+        return others[a] == others[b] or not beside[ours[a]] & beside[ours[b]]
 
-def _mount(bolt: Hole, faces: Sequence[PlaneFace]) -> PlaneFace | None:
-    """The face that a bolt's hole opens into at its narrower end; at equal ends the larger one.
-    Of equal faces it is that at the lower z, as in the mount frame."""
-    first, last = bolt.pieces[0], bolt.pieces[-1]
-    found = []
-    for piece, end, out in ((first, first.low_mm, -bolt.axis), (last, last.high_mm, bolt.axis)):
-        point = bolt.foot + bolt.axis * end
-        for face in faces:
-            low, high = face.corners.min(axis=0) - NEAR_MM, face.corners.max(axis=0) + NEAR_MM
-            level = abs(float(face.normal @ point) - face.offset_mm) < NEAR_MM
-            inside = bool(((low < point) & (point < high)).all())
-            if face.normal @ out > PARALLEL and level and inside:
-                size = -round(face.area_mm2, 2)
-                found.append(((round(piece.diameter_mm, 2), size, *face.normal[::-1]), face))
-    return min(found, key=lambda each: each[0])[1] if found else None
-
-
-def _foot(hole: Hole, mount: PlaneFace) -> Vector:
-    """Where a hole's axis meets the mount face."""
-    along = (mount.offset_mm - mount.normal @ hole.foot) / (mount.normal @ hole.axis)
-    return np.asarray(hole.foot + along * hole.axis)
-
-
-def _pins(found: Sequence[Hole], bolts: Sequence[int], mount: PlaneFace) -> tuple[int, ...]:
-    """Two equal blind holes that open into the mount face."""
-    blind = []
-    for k, hole in enumerate(found):
-        if k in bolts or hole.through or not parallel(hole.axis, mount.normal):
-            continue
-        ends = np.array([hole.pieces[0].low_mm, hole.pieces[-1].high_mm])
-        levels = mount.normal @ hole.foot + ends * (mount.normal @ hole.axis)
-        if np.abs(levels - mount.offset_mm).min() < NEAR_MM:
-            blind.append(k)
-    sets = (_alike(found, blind, k) for k in blind)
-    return next((pair for pair in sets if len(pair) == 2), ())
-
-
-def _pads(faces: Sequence[PlaneFace], h: Vector, row: Vector | None) -> tuple[PlaneFace, ...]:
-    """The largest face along the bolts behind which the whole part lies, and those of half its size
-    or more; of equal ones that at the lower y, as in the mount frame, comes first."""
-    cloud, found = np.concatenate([face.corners for face in faces]), []
-    for face in faces:
-        leans = abs(float(face.normal @ h)) > math.sin(math.radians(MOST_LEAN_DEG))
-        sideways = row is not None and abs(float(face.normal @ row)) > _SIDE
-        if leans or sideways or float((cloud @ face.normal).max()) > face.offset_mm + NEAR_MM:
-            continue
-        across = np.cross(face.normal, h)
-        size = float(np.ptp(face.corners @ h) * np.ptp(face.corners @ across))
-        found.append((-round(size, 2), float(face.normal[1]), face))
-    found.sort(key=lambda each: each[:2])
-    return tuple(face for size, _, face in found if size <= found[0][0] / 2)
-
-
-def _of_bolts(seen: _Seen, fasteners: Mapping[str, Fastener]) -> dict[str, Proposed]:
-    """Figures from the bolts' holes, in the mount frame; sleeves round them are pins."""
-    where, bolt = _named(seen.bolts), seen.holes[seen.bolts[0]]
-    hole = _rounded(bolt.narrow_mm)
-    found = {"bolt_hole_mm": Proposed(hole, where)}
-    fits = [n for n, f in fasteners.items() if f.hole_mm[0] <= hole <= f.hole_mm[1]]
-    if len(fits) == 1:
-        found["bolt"] = Proposed(fits[0], f"{where}, clearance hole by ISO 273")
-    sizes = [piece.diameter_mm for piece in bolt.pieces]
-    narrow = sizes.index(min(sizes))
-    wider = [k for k, size in enumerate(sizes) if size - sizes[narrow] >= STEP_MM]
-    heads = [bolt.pieces[k] for k in wider if k > narrow]
-    sleeves = [bolt.pieces[k] for k in wider if k < narrow]
-    if heads:
-        found["counterbore_mm"] = Proposed(_rounded(heads[0].diameter_mm), where)
-        found["land_mm"] = Proposed(
-            _rounded(heads[0].low_mm), f"{where}: mount face to counterbore"
-        )
-    if len(seen.bolts) == 2:
-        found["bolt_spacing_mm"] = Proposed(_apart(seen, seen.bolts), where)
-        if sleeves:
-            deep = sleeves[-1].high_mm
-            found |= _pin(sleeves[0].diameter_mm, _apart(seen, seen.bolts), deep, where)
-    return found
-
-
-def _of_pins(seen: _Seen) -> dict[str, Proposed]:
-    if not seen.pins:
-        return {}
-    hole, where = seen.holes[seen.pins[0]], _named(seen.pins)
-    return _pin(hole.narrow_mm, _apart(seen, seen.pins), hole.pieces[-1].high_mm, where)
-
-
-def _pin(hole: float, spacing: float, deep: float, where: str) -> dict[str, Proposed]:
-    sizes = {"hole_mm": hole, "spacing_mm": spacing, "depth_mm": deep}
-    return {f"pins.{name}": Proposed(_rounded(size), where) for name, size in sizes.items()}
-
-
-def _of_faces(seen: _Seen, shape: Shape) -> dict[str, Proposed]:
-    """Figures from mount face and pad; `block_back_w_mm` takes the board to stand at the pad."""
-    wide = _reach(seen, 0, 1) + _reach(seen, 0, -1)
-    found = {"block_width_mm": Proposed(_rounded(wide), "width of the block at the mount face")}
-    radii = {
-        _rounded(c.diameter_mm / 2)
-        for c in cylinders(shape)
-        if not c.hollow and abs(c.axis[2]) > PARALLEL and 60 < c.turn_deg < 120 and c.foot[1] > 0
-    }
-    if len(radii) == 1:
-        found["block_corner_mm"] = Proposed(radii.pop(), "round corners behind the bolts")
-    if seen.pads:
-        normal = seen.pads[0].normal
-        before = -seen.pads[0].offset_mm / float(normal[1])
-        tilt = _rounded(-math.degrees(math.asin(normal[2])))
-        found["tilt_deg"] = Proposed(tilt, "pad against bolts")
-        found["pad_w_mm"] = Proposed(_rounded(before), "pad to the bolts' axes")
-        found["bolt_w_mm"] = Proposed(_rounded(before), "the board stands where the pad is")
-        back = _rounded(before + _reach(seen, 1, 1))
-        found["block_back_w_mm"] = Proposed(back, "pad to the back of the block")
-    return found
-
-
-def _reach(seen: _Seen, axis: int, way: int) -> float:
-    """How far the block reaches from the origin: to the side behind a chamfer or flank that cuts
-    the edge of the mount face, else to that edge."""
-    edge = float((way * seen.mount.corners[:, axis]).max())
-    sides = [face.offset_mm for face in seen.faces if way * face.normal[axis] > PARALLEL]
-    return min((side for side in sides if edge < side < edge + CUT_MM), default=edge)
-
-
-def _named(numbers: Sequence[int]) -> str:
-    return " and ".join(f"hole {k + 1}" for k in numbers)
-
-
-def _apart(seen: _Seen, pair: Sequence[int]) -> float:
-    a, b = (seen.holes[k].foot for k in pair)
-    return _rounded(float(np.linalg.norm(b - a)))
-
-
-def _rounded(value: float) -> float:
-    return round(float(value), 2) + 0.0
+    differs = any(
+        comparable(a, b) and ours[a] != ours[b] and not _same(found[a], found[b], names)
+        for a in range(len(found))
+        for b in range(a)
+    )
+    return sorted({k for k in ours if k is not None}) if differs else []

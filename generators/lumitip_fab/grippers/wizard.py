@@ -19,6 +19,7 @@ from lumitip_fab.grippers.picture import found_drawing
 from lumitip_fab.grippers.proposal import Proposal, propose
 from lumitip_fab.grippers.reading import read_solid
 from lumitip_fab.grippers.trial import design_with, example, with_figures
+from lumitip_fab.grippers.ways import Named
 from lumitip_fab.parts.export import mesh, mesh_stl
 from lumitip_fab.parts.gauge import gauge_solid
 from lumitip_fab.parts.surface import Mesh
@@ -51,26 +52,24 @@ class Fingertip:
         }
 
     def notes(self) -> tuple[str, ...]:
-        """What the entry of a gripper cannot describe, or may not."""
-        texts, size = table_of(TEXTS)["found"], self.proposal.shape.bounding_box().size
-        bolts, solids = len(self.proposal.bolts), len(self.proposal.shape.solids())
-        doubts = (
-            (bolts > 2, texts["two"].format(count=bolts)),
-            (solids > 1, texts["solids"].format(count=solids)),
-            (len(self.proposal.pads) > 1, texts["pads"]),
-            (not self.proposal.pads, texts["no_pad"]),
-            (size.Z < size.Y, texts["thin"]),
-        )
-        return tuple(text for holds, text in doubts if holds)
+        """What is doubtful, and what to do."""
+        solids = len(self.proposal.shape.solids())
+        text = table_of(TEXTS)["found"]["solids"].format(count=solids)
+        return (*((text,) if solids > 1 else ()), *self.proposal.notes)
 
 
-def read_fingertip(file: Path, catalogue: Catalogue) -> Fingertip:
+def read_fingertip(file: Path, catalogue: Catalogue, named: Named) -> Fingertip:
     """Read a STEP or FreeCAD file, and find what a gripper's entry needs.
+
+    Args:
+        file: of the maker's fingertip.
+        catalogue: with the threads of bolts.
+        named: holes and faces whose use the user names.
 
     Raises:
         InputError: if it cannot be read, or is no fingertip that can be bolted on.
     """
-    return Fingertip(file, propose(file, read_solid(file), catalogue.fasteners))
+    return Fingertip(file, propose(file, read_solid(file), catalogue.fasteners, named))
 
 
 def started(
