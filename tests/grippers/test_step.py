@@ -162,6 +162,8 @@ def test_what_was_found_is_shown_and_filled_in(
     assert picture.count('stroke="#c0392b"') == 4  # rings of both holes, mount face, pad
     assert ">1, 2: bolt, ⌀ 6.10, 4.30, 7.40<" in picture
     assert picture in (tmp_path / "jaw.html").read_text(encoding="utf-8")
+    assert "No gauge is written: block_width_mm must be known first." in printed
+    assert not (tmp_path / "jaw_gauge.stl").exists()
 
 
 def test_a_found_text_is_toml() -> None:

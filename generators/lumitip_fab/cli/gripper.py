@@ -39,6 +39,7 @@ def new(options: argparse.Namespace) -> int:
     published = load(packaged_design() / _FINGER)
     own = load(options.file) if options.file else published
     tip = None
+    notes: tuple[str, ...] = ()
     if options.answers:
         made = wizard.finished(name, own, options.answers)
     else:
@@ -46,14 +47,14 @@ def new(options: argparse.Namespace) -> int:
             (mount, *_), (pad, *_) = _numbers(options.mount or "0"), _numbers(options.pad or "0")
             named = Named(_numbers(options.bolts or ""), mount, pad)
             tip = wizard.read_fingertip(options.from_step, own.catalogue, named)
-        made = wizard.started(name, published, own.catalogue, options.like, tip)
+        made, notes = wizard.started(name, published, own, options.like, tip)
     files = {out / file: data for file, data in made.items()}
     added = {}
     if options.add:
         entry = made[f"{name}_entry.toml"]
         added = dict([wizard.catalogue_with(name, entry, options.file, options.replace)])
     _write(files, added, options.replace)
-    _report(options, [str(path) for path in (*files, *added)], tip)
+    _report(options, [str(path) for path in (*files, *added)], tip, notes)
     return 0
 
 
@@ -106,17 +107,22 @@ def _write(files: Mapping[Path, bytes], added: Mapping[Path, bytes], replace: bo
         raise OutputError(f"{error.filename}: cannot be written: {error.strerror}") from error
 
 
-def _report(options: argparse.Namespace, written: list[str], tip: "Fingertip | None") -> None:
+def _report(
+    options: argparse.Namespace,
+    written: list[str],
+    tip: "Fingertip | None",
+    notes: tuple[str, ...],
+) -> None:
     figures = tip.proposal.figures if tip else {}
     if options.json:
         found = {name: vars(figure) for name, figure in figures.items()}
-        print(json.dumps({"written": written, "found": found}, indent=1))
+        print(json.dumps({"written": written, "found": found, "notes": notes}, indent=1))
         return
     if options.quiet:
         return
     if tip:
         _print_found(tip)
-    for note in tip.notes() if tip else ():
+    for note in notes:
         OUT.print(note)
     for path in written:
         OUT.print(path)

@@ -1,7 +1,10 @@
 """The files of `lumitip-fab gripper new`, before and after the answers."""
 
+from collections.abc import Mapping
+from collections.abc import Set as Names
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import tomlkit
 
@@ -73,25 +76,24 @@ def read_fingertip(file: Path, catalogue: Catalogue, named: Named) -> Fingertip:
 
 
 def started(
-    name: str, finger: Input, catalogue: Catalogue, like: str | None, tip: Fingertip | None
-) -> Written:
-    """Page, answers file, and where there are figures for it a gauge.
+    name: str, published: Input, own: Input, like: str | None, tip: Fingertip | None
+) -> tuple[Written, tuple[str, ...]]:
+    """Page, answers file, and where its figures are known a gauge; with what has to be noted.
 
     Args:
         name: of the new gripper.
-        finger: a finger that holds the grippers of the catalogue, for the drawings.
-        catalogue: with the gripper that is to be drawn.
-        like: a gripper of the catalogue to draw, and to make the gauge of.
+        published: a finger that holds the example, for the drawings.
+        own: the finger that the gripper is to hold, with its catalogue, for the gauge.
+        like: a gripper of that catalogue to draw, and to make the gauge of.
         tip: the maker's fingertip.
 
     Raises:
-        InputError: if `like` is not in the catalogue.
+        InputError: if `like` is not in the catalogue, or breaks a rule with that finger.
     """
-    texts, shown = table_of(TEXTS), example(finger.catalogue)
-    if like:
-        shown = _entry(catalogue, like)
-    foot = mesh(gauge_solid(design_with(finger, name, shown)), _CHORD_MM)
-    gauge = foot if like else None
+    texts = table_of(TEXTS)
+    shown = _entry(own.catalogue, like) if like else example(published.catalogue)
+    foot = _gauge(own if like else published, name, shown)
+    gauge, notes = (foot if like else None), tip.notes() if tip else ()
     drawings = {
         texts["page"]["foot"]: coupling_drawing(shown, foot),
         texts["page"]["whole"]: body_drawing(shown),
@@ -106,23 +108,35 @@ def started(
         picture = found_drawing(tip.proposal)
         files[f"{name}_found.svg"] = picture.encode()
         drawings = {texts["page"]["step"].format(file=tip.file.name): picture, **drawings}
-        gauge = _gauge_of(tip, name, finger, shown)
+        values = {figure: answer.value for figure, answer in known.items()}
+        gauge, missing = _gauge_of(values, tip.proposal.open, name, own, shown)
+        notes += missing
     if gauge:
         files[f"{name}_gauge.stl"] = mesh_stl(gauge)
     answers, sheet = f"{name}.toml", f"{name}.html"
     title = shown.title or like if like else ""
     files[answers] = template(name, known, shown if like else None, sheet).encode()
     files[sheet] = page(name, answers, shown, title, drawings).encode()
-    return files
+    return files, notes
 
 
-def _gauge_of(tip: Fingertip, name: str, finger: Input, others: Gripper) -> Mesh | None:
-    """The gauge of what a fingertip gives; none where that does not go with the other figures."""
-    values = {figure: proposed.value for figure, proposed in tip.proposal.figures.items()}
+def _gauge(finger: Input, name: str, gripper: Gripper, file: Path | None = None) -> Mesh:
+    return mesh(gauge_solid(design_with(finger, name, gripper, file)), _CHORD_MM)
+
+
+def _gauge_of(
+    values: Mapping[str, Any], left: Names[str], name: str, finger: Input, others: Gripper
+) -> tuple[Mesh | None, tuple[str, ...]]:
+    """The gauge of a fingertip's figures, where all are known and go together; else why not."""
+    texts = table_of(TEXTS)["gauge"]
+    missing = sorted({*texts["needs"], *left} - set(values))
+    if missing:
+        return None, (texts["open"].format(figures=", ".join(missing)),)
     try:
-        return mesh(gauge_solid(design_with(finger, name, with_figures(others, values))))
-    except InputError:
-        return None
+        return _gauge(finger, name, with_figures(others, values)), ()
+    except InputError as error:
+        reasons = [texts["broken"].format(reason=problem.text) for problem in error.problems]
+        return None, tuple(reasons)
 
 
 def _entry(catalogue: Catalogue, name: str) -> Gripper:
@@ -139,7 +153,7 @@ def finished(name: str, config: Input, answers: Path) -> Written:
         InputError: with every fault of the answers, or every rule that the gripper breaks.
     """
     gripper = read_answers(answers)
-    gauge = mesh(gauge_solid(design_with(config, name, gripper, answers)))
+    gauge = _gauge(config, name, gripper, answers)
     return {
         f"{name}_entry.toml": entry_text(name, gripper).encode(),
         f"{name}_gauge.stl": mesh_stl(gauge),
