@@ -80,6 +80,14 @@ def test_the_user_names_the_mount_face_where_both_ends_may_be_it(config: Input) 
     assert (values["counterbore_mm"], values["land_mm"]) == (8.0, 48.0)
 
 
+def test_pins_off_the_row_of_bolts_stay_open(config: Input) -> None:
+    for places in ([(-7, -5), (7, -5)], [(-10, 2), (9, 2)], [(-10, 2)]):
+        found = proposal_of(block(*bolts(-6, 6), *(bore(*at, 2.5, -1, 4) for at in places)), config)
+        assert {"pins.hole_mm", "pins.spacing_mm", "pins.depth_mm"} <= found.open
+        assert not any(name.startswith("pins.") for name in found.figures)
+        assert "no pair of pins in line with the bolts" in "\n".join(found.notes)
+
+
 def test_pins_that_go_through_have_no_depth(config: Input) -> None:
     tip = block(*bolts(-5, 5), *plain(-10.5, 10.5, hole=2.5))
     values = figures_of(tip, config, bolts=numbers_of(tip, config, 4.5))

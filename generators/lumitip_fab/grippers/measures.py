@@ -91,12 +91,15 @@ def _wider(diameter_mm: float, sizes: Sequence[float]) -> bool:
 
 def _of_pins(found: Measured, way: Way, seen: Features) -> None:
     """Locating pins beside the bolts, or sleeves round them."""
-    bolt = seen.holes[way.bolts[0]]
+    bolt, where = seen.holes[way.bolts[0]], in_full(way.bolts)
     sizes = [piece.diameter_mm for piece in bolt.pieces]
     sleeves = [p for p in bolt.pieces[: sizes.index(min(sizes))] if _wider(p.diameter_mm, sizes)]
-    if sleeves and len(way.bolts) == 2:
+    sure = not way.beside if sleeves else bool(way.pins) or not way.beside
+    if not sure or (sleeves and len(way.bolts) != 2):
+        found.note("pins", *_PINS, holes=in_full(way.beside) or where, off=f"{ON_ROW_MM:g}")
+    elif sleeves:
         _take_pins(found, way.bolts, sleeves[-1].diameter_mm, sleeves[-1].high_mm, seen)
-    if way.pins:
+    elif way.pins:
         hole = seen.holes[way.pins[0]]
         _take_pins(found, way.pins, hole.narrow_mm, hole.pieces[-1].high_mm, seen)
         if hole.through:

@@ -75,9 +75,19 @@ class Way:
 
     @cached_property
     def pins(self) -> tuple[int, ...]:
-        """Two equal holes beside the bolts."""
-        sets = (alike(self.seen.holes, self.beside, k) for k in self.beside)
-        return next((pair for pair in sets if len(pair) == 2), ())
+        """Two equal holes beside the bolts, on their row and to either side of its middle alike;
+        none if there are others besides."""
+        pair = self.beside
+        if len(pair) != 2 or len(alike(self.seen.holes, pair, pair[0])) != 2:
+            return ()
+        ends = np.array([self.foot(k) for k in pair])
+        off = ends.mean(axis=0) - self.middle
+        line = self.foot(self.bolts[1]) - self.middle if len(self.bolts) == 2 else ends[1] - ends[0]
+        line = line / np.linalg.norm(line)
+        beyond = ends - self.middle
+        beyond = beyond - np.outer(beyond @ line, line)
+        far = max(float(np.linalg.norm(off)), *np.linalg.norm(beyond, axis=1).tolist())
+        return pair if far <= ON_ROW_MM else ()
 
     @cached_property
     def middle(self) -> Vector:
