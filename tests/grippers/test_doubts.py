@@ -139,6 +139,19 @@ def test_bolts_across_the_finger_are_doubted(config: Input) -> None:
         assert "If its bolts do not run along the finger" in "\n".join(found.notes)
 
 
+SLOT = [bore(6, 2, 4.5, -1, 51), bore(8, 2, 4.5, -1, 51), box((6, 8), (-0.25, 4.25), (-1, 51))]
+
+
+def test_four_bolts_or_a_slot_leave_the_block_open(config: Input) -> None:
+    four = proposal_of(block(*(b for y in (-4, 4) for b in plain(-7, 7, y=y, hole=3.4))), config)
+    assert not {"bolt_spacing_mm", *BLOCK} & set(four.figures)
+    assert "4 equal holes are taken for bolts" in "\n".join(four.notes)
+    slotted = proposal_of(block(*plain(-7), *SLOT), config)
+    assert not {"bolt_spacing_mm", *BLOCK} & set(slotted.figures)
+    assert {"bolt_spacing_mm", *BLOCK} <= slotted.open
+    assert "There are slots of 4.5 mm along the bolts" in "\n".join(slotted.notes)
+
+
 def test_a_groove_and_bosses_do_not_make_the_block_smaller(config: Input) -> None:
     between = block(*bolts(-7, 7), box((-3, 3), (-9, 9), (-1, 2)))
     assert figures_of(between, config)["block_width_mm"] == 24.0

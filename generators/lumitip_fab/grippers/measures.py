@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 from lumitip_fab.catalogue.materials import Fastener
-from lumitip_fab.grippers.features import NEAR_MM, PARALLEL, Features, Vector
+from lumitip_fab.grippers.features import NEAR_MM, PARALLEL, Features, Vector, parallel
 from lumitip_fab.grippers.ways import ON_ROW_MM, SQUARE, STEP_MM, Way
 
 CUT_MM = 2.0  # of the mount face's edges by chamfers, at most
 WIDE = 1.5  # width of a fingertip in its lengths, at most; else its bolts may run across it
 UPRIGHT: Vector = np.array([0.0, 0.0, 1.0])
+_SLOT_DEG = (150.0, 210.0)  # of the full circle, at the ends of a slot
 _SPACING, _HOLE, _BOLT = "bolt_spacing_mm", "bolt_hole_mm", "bolt"
 _PAD = ("pad_w_mm", "bolt_w_mm", "block_back_w_mm")
 _BLOCK = ("block_width_mm", "block_corner_mm", *_PAD)
@@ -82,11 +83,25 @@ def _of_bolts(found: Measured, way: Way, seen: Features, fasteners: Mapping[str,
     if len(way.bolts) == 2:
         found.take(_SPACING, _apart(seen, way.bolts), where)
     if len(way.bolts) > 2:
-        found.note("many", _SPACING, count=len(way.bolts))
+        found.note("many", _SPACING, *_BLOCK, *_PINS, count=len(way.bolts))
+    slots = _slots(seen)
+    if slots:
+        found.note("slots", _SPACING, *_BLOCK, *_PINS, diameters=slots)
 
 
 def _wider(diameter_mm: float, sizes: Sequence[float]) -> bool:
     return diameter_mm - min(sizes) >= STEP_MM
+
+
+def _slots(seen: Features) -> str:
+    """Diameters of two equal half-cylinders along the bolts that begin in the mount face."""
+    ends = [
+        round(c.diameter_mm, 2)
+        for c in seen.cylinders
+        if c.hollow and parallel(c.axis, UPRIGHT) and abs(c.low_mm) < CUT_MM
+        if _SLOT_DEG[0] < c.turn_deg < _SLOT_DEG[1]
+    ]
+    return ", ".join(f"{size:g}" for size in sorted({s for s in ends if ends.count(s) > 1}))
 
 
 def _of_pins(found: Measured, way: Way, seen: Features) -> None:
