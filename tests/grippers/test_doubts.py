@@ -1,5 +1,7 @@
 """STEP files that may be read in several ways: what they do not show beyond doubt stays open."""
 
+from typing import Any
+
 import pytest
 from build123d import Shape
 
@@ -21,6 +23,10 @@ from lumitip_fab.errors import InputError
 PAD = {"pad_w_mm", "bolt_w_mm", "block_back_w_mm"}
 BLOCK = {"block_width_mm", *PAD}
 BOLTS = {"bolt", "bolt_hole_mm", "bolt_spacing_mm", "counterbore_mm", "land_mm"}
+
+
+def noted(shape: Shape, config: Input, **named: Any) -> str:
+    return "\n".join(proposal_of(shape, config, **named).notes)
 
 
 def numbers_of(shape: Shape, config: Input, diameter_mm: float) -> tuple[int, ...]:
@@ -150,6 +156,12 @@ def test_four_bolts_or_a_slot_leave_the_block_open(config: Input) -> None:
     assert not {"bolt_spacing_mm", *BLOCK} & set(slotted.figures)
     assert {"bolt_spacing_mm", *BLOCK} <= slotted.open
     assert "There are slots of 4.5 mm along the bolts" in "\n".join(slotted.notes)
+
+
+def test_a_block_beside_its_bolts_is_not_made_wider_than_it_is(config: Input) -> None:
+    tip = block(*bolts(-9, 3))
+    assert figures_of(tip, config)["block_width_mm"] == 18.0
+    assert "which reaches" in noted(tip, config)
 
 
 def test_a_groove_and_bosses_do_not_make_the_block_smaller(config: Input) -> None:

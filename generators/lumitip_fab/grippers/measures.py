@@ -65,6 +65,8 @@ def measured(way: Way, seen: Features, fasteners: Mapping[str, Fastener]) -> Mea
     _of_pad(found, way, seen)
     for name in found.open & set(found.figures):
         del found.figures[name]
+    if "block_width_mm" in found.open:
+        found.notes.pop("aside", None)
     return found
 
 
@@ -131,7 +133,10 @@ def _take_pins(
 def _of_block(found: Measured, way: Way, seen: Features) -> None:
     right, left = (_reach(found, way, seen, 0, side) for side in (1, -1))
     where = "width of the block at the mount face"
-    found.take("block_width_mm", right + left, where)
+    if abs(right - left) > ON_ROW_MM:
+        where = "twice the distance from the middle of the bolts to the nearer side of the block"
+        found.note("aside", right=round(right, 2), left=round(left, 2))
+    found.take("block_width_mm", 2 * min(right, left), where)
     radii = {
         round(c.diameter_mm / 2, 2)
         for c in seen.cylinders
