@@ -176,6 +176,13 @@ def test_a_groove_and_bosses_do_not_make_the_block_smaller(config: Input) -> Non
         assert "The block reaches beyond the mount face round the bolts" in found.notes[0]
 
 
+@pytest.mark.parametrize(("hole", "thread"), [(3.3, "M4"), (6.8, "M8"), (4.2, "M5")])
+def test_a_tap_drill_is_no_clearance_hole(hole: float, thread: str, config: Input) -> None:
+    tip = block(*plain(-7, 7, hole=hole))
+    assert not {"bolt", "bolt_hole_mm"} & set(figures_of(tip, config))
+    assert f"A hole of {hole:g} mm may be tapped for {thread}" in noted(tip, config)
+
+
 def test_a_number_that_is_none_of_the_part_is_one_error(config: Input) -> None:
     tip = SETS["dowels"]
     for option, value, allowed in (

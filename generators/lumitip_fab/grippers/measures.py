@@ -14,6 +14,12 @@ from lumitip_fab.grippers.ways import ON_ROW_MM, SQUARE, STEP_MM, Way
 CUT_MM = 2.0  # of the mount face's edges by chamfers, at most
 WIDE = 1.5  # width of a fingertip in its lengths, at most; else its bolts may run across it
 UPRIGHT: Vector = np.array([0.0, 0.0, 1.0])
+_TAPPED_MM = {
+    **{"M2": 1.6, "M2.5": 2.05, "M3": 2.5, "M4": 3.3, "M5": 4.2, "M6": 5.0, "M8": 6.8},
+    **{"M10": 8.5, "M12": 10.2},
+}
+"""Tap drills by thread, by ISO 2306: a hole of this size may have a thread."""
+_DRILL_MM = 0.05  # from a tap drill's diameter
 _SLOT_DEG = (150.0, 210.0)  # of the full circle, at the ends of a slot
 _SPACING, _HOLE, _BOLT = "bolt_spacing_mm", "bolt_hole_mm", "bolt"
 _PAD = ("pad_w_mm", "bolt_w_mm", "block_back_w_mm")
@@ -77,6 +83,9 @@ def _of_bolts(found: Measured, way: Way, seen: Features, fasteners: Mapping[str,
     fits = [n for n, f in fasteners.items() if f.hole_mm[0] <= hole <= f.hole_mm[1]]
     if len(fits) == 1:
         found.figures[_BOLT] = Proposed(fits[0], f"{where}, clearance hole by ISO 273")
+    tapped = [n for n, drill in _TAPPED_MM.items() if abs(drill - hole) <= _DRILL_MM]
+    if tapped:
+        found.note("tapped", _HOLE, _BOLT, diameter=hole, thread=tapped[0])
     sizes = [piece.diameter_mm for piece in bolt.pieces]
     heads = [p for p in bolt.pieces[sizes.index(min(sizes)) :] if _wider(p.diameter_mm, sizes)]
     if heads:
