@@ -3,7 +3,7 @@
 from typing import Any
 
 import pytest
-from build123d import Shape
+from build123d import Axis, Shape
 
 from fingertip_shapes import (
     across,
@@ -181,6 +181,14 @@ def test_a_tap_drill_is_no_clearance_hole(hole: float, thread: str, config: Inpu
     tip = block(*plain(-7, 7, hole=hole))
     assert not {"bolt", "bolt_hole_mm"} & set(figures_of(tip, config))
     assert f"A hole of {hole:g} mm may be tapped for {thread}" in noted(tip, config)
+
+
+def test_the_lean_of_a_pad_is_noted_and_is_no_tilt(config: Input) -> None:
+    before = box((-13, 13), (-18, -6), (-1, 51)).rotate(Axis.X, 1.5)
+    tip = block(*bolts(-7, 7)) - before
+    found = proposal_of(tip, config, pad=face_at(tip, 8.0) % 2 + 1)
+    assert "tilt_deg" not in found.figures
+    assert "The pad leans 1.50 degrees against the bolts" in "\n".join(found.notes)
 
 
 def test_a_number_that_is_none_of_the_part_is_one_error(config: Input) -> None:

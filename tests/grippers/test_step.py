@@ -50,7 +50,7 @@ def found(file: Path, config: Input) -> Proposal:
 
 
 GIVEN = (
-    *("bolt", "bolt_spacing_mm", "bolt_hole_mm", "counterbore_mm", "land_mm", "tilt_deg"),
+    *("bolt", "bolt_spacing_mm", "bolt_hole_mm", "counterbore_mm", "land_mm"),
     *("block_corner_mm", "block_back_w_mm", "bolt_w_mm"),
     *("pins.hole_mm", "pins.spacing_mm", "pins.depth_mm"),
 )
@@ -107,7 +107,6 @@ def test_plain_holes_leave_the_counterbore_open(config: Input) -> None:
         "bolt": "M4",
         "bolt_spacing_mm": 14.0,
         "block_width_mm": 24.0,
-        "tilt_deg": 0.0,
         "pad_w_mm": 10.0,
         "bolt_w_mm": 10.0,
         "block_back_w_mm": 16.0,

@@ -21,6 +21,7 @@ _TAPPED_MM = {
 """Tap drills by thread, by ISO 2306: a hole of this size may have a thread."""
 _DRILL_MM = 0.05  # from a tap drill's diameter
 _SLOT_DEG = (150.0, 210.0)  # of the full circle, at the ends of a slot
+_LEAN_DEG = 0.05
 _SPACING, _HOLE, _BOLT = "bolt_spacing_mm", "bolt_hole_mm", "bolt"
 _PAD = ("pad_w_mm", "bolt_w_mm", "block_back_w_mm")
 _BLOCK = ("block_width_mm", "block_corner_mm", *_PAD)
@@ -174,7 +175,8 @@ def _of_pad(found: Measured, way: Way, seen: Features) -> None:
         "block_back_w_mm", before + _reach(found, way, seen, 1, 1), "pad to the back of the block"
     )
     lean = -math.degrees(math.asin(pad.normal[2]))
-    found.take("tilt_deg", lean, "pad against bolts")
+    if abs(lean) > _LEAN_DEG:
+        found.note("lean", lean=lean)
 
 
 def _reach(found: Measured, way: Way, seen: Features, axis: int, side: int) -> float:
