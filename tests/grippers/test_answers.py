@@ -76,6 +76,7 @@ def test_an_entry_from_the_answers_is_that_gripper(fill: Any, config: Input) -> 
         assert (read.unsure, read.title) == ({}, "My jaw")
 
 
+NOSE = {"front_width_mm": 12.0, "front_w_mm": 3.0, "half_angle_deg": 40.0, "height_mm": 2.5}
 FAULTS: dict[str, tuple[dict[str, Any], str]] = {
     "range": ({"land_mm": 700.0}, "land_mm is 700.0; at most 500 is allowed"),
     "text": ({"stroke_mm": "60 mm"}, "stroke_mm is '60 mm'; a number is needed: write 60"),
@@ -86,6 +87,30 @@ FAULTS: dict[str, tuple[dict[str, Any], str]] = {
         "land_mm.confidence is 'sure'; 'datasheet', 'measured', 'inferred' or 'assumed' is allowed",
     ),
     "wall": ({"bolt_spacing_mm": 8.5}, "whose block has 0.50 mm of wall between its counterbores"),
+    "pins": (
+        {"pins": {"hole_mm": 3.0, "spacing_mm": 40.0, "depth_mm": 2.6}},
+        "whose block has -7.50 mm of wall beside its pins",
+    ),
+    "pins_at_the_side": (
+        {"pins": {"hole_mm": 3.0, "spacing_mm": 27.0, "depth_mm": 2.6}},
+        "whose block has -1.00 mm of wall beside its pins",
+    ),
+    "pins_together": (
+        {"pins": {"hole_mm": 3.0, "spacing_mm": 2.0, "depth_mm": 2.6}},
+        "whose block has -1.00 mm of wall between its pins",
+    ),
+    "sleeves": (
+        {"pins": {"hole_mm": 3.0, "spacing_mm": 16.0, "depth_mm": 2.6}},
+        "is for sleeves round them; more than bolt_hole_mm = 4.4 is needed",
+    ),
+    "nose": (
+        {"nose": NOSE | {"front_width_mm": 40.0}},
+        "whose nose is 40.4 mm wide at the front of its block; less than block_width_mm = 28",
+    ),
+    "nose_before_the_block": (
+        {"nose": NOSE | {"front_w_mm": -20.0}},
+        "whose nose is 51.0 mm wide at the front of its block",
+    ),
     "bolt": ({"bolt": "M5"}, "whose bolt_hole_mm = 4.4 is not a clearance hole for an M5"),
 }
 

@@ -17,7 +17,7 @@ from lumitip_fab.derive.finger.outline import (
 from lumitip_fab.derive.finger.stack import held_by, is_flex
 from lumitip_fab.derive.making.fits import derive_fits
 from lumitip_fab.derive.mount.fasteners import bolt_length_mm
-from lumitip_fab.derive.mount.rules import refuse_block, refuse_place
+from lumitip_fab.derive.mount.rules import refuse_block, refuse_nose, refuse_place
 from lumitip_fab.derive.mount.tie_lugs import finger_lugs
 from lumitip_fab.derive.mount.unsure import unsure_figures
 from lumitip_fab.design import Closing, Letter, Mould, Mount, Outline, Stack
@@ -45,6 +45,7 @@ def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Diagnostic
     faults.unless(
         front <= most, "no_wall_before_bolt", field=field, value=value, most=most - before
     )
+    refuse_nose(gripper, front, faults)
     pins = gripper.pins
     mount = Mount(
         gripper=p.coupling.gripper,

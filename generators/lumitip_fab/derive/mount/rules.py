@@ -1,6 +1,7 @@
 """Rules of coupling, holder and flange: refuse what does not fit or would break."""
 
 import math
+from collections.abc import Iterator
 
 from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
 from lumitip_fab.config.load import Input
@@ -78,10 +79,39 @@ def refuse_block(config: Input, gripper: Gripper, faults: Diagnostics) -> None:
         ("round the bolts under their heads", head - hole, line_mm),
         ("over the pins", gripper.land_mm - (pins.depth_mm if pins else 0.0), None),
         ("between bolts and pins", _to_pins_mm(gripper, p.printer.fit_mm), line_mm),
+        *_beside_pins(gripper, p.printer.fit_mm),
     )
     for place, wall, printed in walls:
         least = p.printer.min_wall_mm if printed is None else printed
         faults.unless(wall >= least - 1e-9, "block_wall", wall=wall, place=place, least=least)
+
+    sleeves = pins is not None and pins.spacing_mm == apart
+    faults.unless(
+        not sleeves or pins is None or pins.hole_mm > gripper.bolt_hole_mm,
+        "sleeves_narrow",
+        gripper=gripper,
+    )
+
+
+def refuse_nose(gripper: Gripper, front_w_mm: float, faults: Diagnostics) -> None:
+    """Refuse flanks that leave the block's front, at this w, as wide as the rest of it."""
+    nose = gripper.nose
+    if nose is None:
+        return
+    slope = 2 * math.tan(math.radians(nose.half_angle_deg))
+    front = nose.front_width_mm + slope * (front_w_mm - nose.front_w_mm)
+    faults.unless(
+        front < gripper.block_width_mm, "nose_wide", gripper=gripper, nose=nose, front=front
+    )
+
+
+def _beside_pins(gripper: Gripper, fit_mm: float) -> Iterator[tuple[str, float, None]]:
+    """Walls of the holes for pins to each other and to the sides of the block."""
+    if gripper.pins is None:
+        return
+    hole, apart = gripper.pins.hole_mm + 2 * fit_mm, gripper.pins.spacing_mm
+    yield "beside its pins", (gripper.block_width_mm - apart - hole) / 2, None
+    yield "between its pins", apart - hole, None
 
 
 def _to_pins_mm(gripper: Gripper, fit_mm: float) -> float:
