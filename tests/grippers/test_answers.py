@@ -43,6 +43,13 @@ def test_the_answers_file_asks_for_every_figure(tmp_path: Path) -> None:
     assert not (tmp_path / "my_jaw_gauge.stl").exists()  # no figure is known yet
 
 
+def test_the_line_for_a_coupling_stands_where_it_belongs(tmp_path: Path) -> None:
+    assert main(["gripper", "new", "my_jaw", "--out", str(tmp_path), "--quiet"]) == 0
+    text = (tmp_path / "my_jaw.toml").read_text(encoding="utf-8")
+    asked = tomllib.loads(text.replace('# base = ""', 'base = "Robotiq 2F"'))
+    assert asked["base"] == "Robotiq 2F"
+
+
 def test_figures_of_another_gripper_stand_beside(tmp_path: Path) -> None:
     assert main(["gripper", "new", "my_jaw", "--out", str(tmp_path), "--like", "wsg50"]) == 0
     text = (tmp_path / "my_jaw.toml").read_text(encoding="utf-8")
@@ -79,6 +86,10 @@ def test_an_entry_from_the_answers_is_that_gripper(fill: Any, config: Input) -> 
 NOSE = {"front_width_mm": 12.0, "front_w_mm": 3.0, "half_angle_deg": 40.0, "height_mm": 2.5}
 FAULTS: dict[str, tuple[dict[str, Any], str]] = {
     "range": ({"land_mm": 700.0}, "land_mm is 700.0; at most 500 is allowed"),
+    "pitch": (
+        {"bolt": "M4x0.7"},
+        """bolt is 'M4x0.7'; M and the diameter of a metric thread, as in "M4" or "M2.5", without""",
+    ),
     "text": ({"stroke_mm": "60 mm"}, "stroke_mm is '60 mm'; a number is needed: write 60"),
     "unknown": ({"bold": 1}, "bold is not a known key. Did you mean 'bolt'?"),
     "open": ({"bolt": OPEN}, 'bolt is "?"; a metric thread such as "M4" is needed. Outside jaws'),

@@ -203,6 +203,10 @@ def test_a_damaged_file_is_one_error(
 UNFIT: dict[str, tuple[Callable[[], Shape], str]] = {
     "no_holes": (block, "narrower than 2 mm: 0."),
     "blind": (lambda: block(bore(0, 0, 4.5, -1, 20)), "narrower than 2 mm: 1."),
+    "metres": (
+        lambda: block(*plain(-7, 7)).scale(0.001),
+        "The part is 0.024 x 0.016 x 0.05 mm: if that is wrong, export it again in the right unit",
+    ),
     "narrow": (lambda: block(bore(0, 0, 1.0, -1, 51)), "narrower than 2 mm: 1."),
     "round": (
         lambda: Cylinder(10, 40).rotate(Axis.X, 90) - bore(0, 0, 4.5, -20, 20),

@@ -7,7 +7,8 @@ from pydantic import Field, model_validator
 from lumitip_fab.catalogue.controllers import OPEN, Signal
 from lumitip_fab.catalogue.record import Length, Name, Offset, Sourced, Strict, Traced
 
-Screw = Annotated[str, Field(pattern=r"^M\d{1,2}(\.\d)?$")]
+SCREW = r"^M\d{1,2}(\.\d)?$"
+Screw = Annotated[str, Field(pattern=SCREW)]
 
 
 class Nose(Strict):

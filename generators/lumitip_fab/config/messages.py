@@ -13,6 +13,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from lumitip_fab.catalogue.grippers import SCREW
 from lumitip_fab.catalogue.record import NAME, PIN, TITLE
 from lumitip_fab.config.parameters import DATE, REVISION
 from lumitip_fab.config.source import Source
@@ -50,6 +51,7 @@ _PATTERNS = {
     "or digit,",
     PIN: "1 to 16 letters, digits or _, beginning with a letter,",
     DATE: 'year, month and day as in "2026-11-28", or nothing',
+    SCREW: 'M and the diameter of a metric thread, as in "M4" or "M2.5", without its pitch,',
     REVISION: "1 to 8 letters, digits, dots or hyphens",
 }
 

@@ -41,7 +41,8 @@ def template(name: str, known: Mapping[str, Answer], like: Gripper | None, page:
         page: name of the page that shows how to measure.
     """
     texts = table_of(TEXTS)["answers"]
-    lines, table = [texts["head"].format(name=name, page=page).rstrip(), 'title = ""'], ""
+    head, table = texts["head"].format(name=name, page=page).rstrip(), ""
+    lines = [head, 'title = ""', *_comment(texts["base"]), '# base = ""']
     for figure in figures():
         if figure.table != table:
             table = figure.table
