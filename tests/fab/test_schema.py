@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -136,3 +137,20 @@ def test_a_design_folder_of_ones_own_comes_with_the_schema(tmp_path: Path) -> No
     for file in sorted((tmp_path / "mine").glob("*.toml")):
         first = file.read_text(encoding="utf-8").splitlines()[0]
         assert (file.parent / first.removeprefix("#:schema ")).is_file()
+
+
+def test_entries_of_the_users_own_folder_are_offered(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.copytree(DESIGN, tmp_path / "mine")
+    own, grippers = tmp_path / "mine/fingertip.toml", tmp_path / "mine/parts/grippers.toml"
+    text = grippers.read_text(encoding="utf-8")
+    grippers.write_text(text + "\n[my_jaw]\ntitle = 'mine'\n", encoding="utf-8")
+    assert main(["schema", str(own)]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert "my_jaw" in _property(found, "coupling.gripper")["anyOf"][0]["enum"]
+    grippers.write_text("[my_jaw", encoding="utf-8")
+    assert main(["schema", str(own)]) == 2
+    assert "grippers.toml:" in capsys.readouterr().err
+    assert main(["schema", str(tmp_path / "none.toml")]) == 2
+    assert "none.toml" in capsys.readouterr().err

@@ -172,7 +172,9 @@ def test_a_design_is_derived_with_the_new_entry(
     before = parts.read_text(encoding="utf-8")
     command = ["gripper", "new", "my_jaw", "--answers", answers, "--file", str(own), "--add"]
     assert main(command) == 0
-    assert 'coupling.gripper = "my_jaw"' in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert 'coupling.gripper = "my_jaw"' in printed
+    assert f"lumitip-fab schema {own} > {own.parent}/schema.json" in printed
     after = parts.read_text(encoding="utf-8")
     assert after.startswith(before.rstrip())
     assert (Path(answers).parent / "my_jaw_entry.toml").read_text(encoding="utf-8") in after

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from lumitip_fab.cli.screen import OUT
 from lumitip_fab.errors import InputError, OutputError, Problem
-from lumitip_fab.paths import packaged_design
+from lumitip_fab.paths import design_folder, packaged_design
 from lumitip_fab.text import table_of
 
 if TYPE_CHECKING:
@@ -129,7 +129,9 @@ def _report(
     step = "answers" if not options.answers else "use" if options.add else "add"
     answers = _folder(options) / f"{options.name}.toml"
     text = table_of("grippers/texts.toml")["next"][step]
-    OUT.print(text.format(name=options.name, answers=answers))
+    file = options.file or packaged_design() / _FINGER
+    places = {"answers": answers, "file": file, "folder": design_folder(file)}
+    OUT.print(text.format(name=options.name, **places), soft_wrap=True)
 
 
 def _print_found(tip: "Fingertip") -> None:

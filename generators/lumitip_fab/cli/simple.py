@@ -32,11 +32,18 @@ def init(options: argparse.Namespace) -> int:
     return 0
 
 
-def schema(_: argparse.Namespace) -> int:
+def schema(options: argparse.Namespace) -> int:
     """Print the JSON Schema of parameter files."""
+    from lumitip_fab.config.messages import shown_path
     from lumitip_fab.config.schema import schema_text
+    from lumitip_fab.config.source import read_toml
+    from lumitip_fab.paths import design_folder
 
-    print(schema_text(), end="")
+    folder = None
+    if options.file:
+        read_toml(options.file, shown_path(options.file))
+        folder = design_folder(options.file)
+    print(schema_text(folder), end="")
     return 0
 
 

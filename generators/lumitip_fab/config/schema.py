@@ -2,12 +2,15 @@
 
 import json
 import tomllib
+from pathlib import Path
 from typing import Any
 
 from lumitip_fab.config.automatic import AUTO, automatic_fields
+from lumitip_fab.config.messages import shown_path
 from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.config.parts import NAMED, NONE, OPTIONAL
-from lumitip_fab.paths import packaged_design
+from lumitip_fab.config.source import read_toml
+from lumitip_fab.paths import packaged_design, parts_file
 
 BASE = "presets/published.toml"
 """The preset whose values are the defaults."""
@@ -25,9 +28,17 @@ UNITS = {
 _CONSTRAINTS = ("type", "anyOf", "enum", "const", "pattern", "minLength", "maxLength")
 
 
-def schema_text() -> str:
+def schema_text(folder: Path | None = None) -> str:
     """The JSON Schema of parameter files: units, defaults, names of catalogue entries, and
-    docstrings as descriptions."""
+    docstrings as descriptions.
+
+    Args:
+        folder: a design folder whose own entries are offered; none for the packaged ones.
+
+    Raises:
+        InputError: if a catalogue file of that folder is not TOML.
+    """
+    folder = folder or packaged_design()
     schema = Parameters.model_json_schema()
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
     schema["title"] = "Lumitip parameter file"
@@ -35,8 +46,9 @@ def schema_text() -> str:
     for section, values in base.items():
         if isinstance(values, dict):
             model = schema["properties"][section]["$ref"].rpartition("/")[2]
-            _annotate(schema["$defs"][model]["properties"], section, values)
-    _annotate({k: v for k, v in schema["properties"].items() if "$ref" not in v}, "", base)
+            _annotate(schema["$defs"][model]["properties"], section, values, folder)
+    flat = {k: v for k, v in schema["properties"].items() if "$ref" not in v}
+    _annotate(flat, "", base, folder)
     schema["properties"]["extends"] = {
         "type": "string",
         "title": "extends",
@@ -74,7 +86,9 @@ def field_title(field: str) -> str:
     return field.replace("_", " ")
 
 
-def _annotate(properties: dict[str, Any], section: str, values: dict[str, Any]) -> None:
+def _annotate(
+    properties: dict[str, Any], section: str, values: dict[str, Any], folder: Path
+) -> None:
     """Add to each property of a table its title, its default, and the names that it may have."""
     for field, shape in properties.items():
         shape["title"] = field_title(field)
@@ -82,7 +96,8 @@ def _annotate(properties: dict[str, Any], section: str, values: dict[str, Any]) 
         kind = NAMED.get(f"{section}.{field}")
         if kind is not None:
             none = [NONE] if f"{section}.{field}" in OPTIONAL else []
-            _offer(shape, [*_packaged(f"parts/{kind}.toml"), *none])
+            entries = parts_file(folder, kind)
+            _offer(shape, [*read_toml(entries, shown_path(entries)).table, *none])
 
 
 def _offer(shape: dict[str, Any], names: list[str]) -> None:
