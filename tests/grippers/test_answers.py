@@ -88,7 +88,7 @@ FAULTS: dict[str, tuple[dict[str, Any], str]] = {
     "range": ({"land_mm": 700.0}, "land_mm is 700.0; at most 500 is allowed"),
     "pitch": (
         {"bolt": "M4x0.7"},
-        """bolt is 'M4x0.7'; M and the diameter of a metric thread, as in "M4" or "M2.5", without""",
+        """bolt is 'M4x0.7'; M and the diameter of a metric thread, as in "M4" or "M2.5",""",
     ),
     "text": ({"stroke_mm": "60 mm"}, "stroke_mm is '60 mm'; a number is needed: write 60"),
     "unknown": ({"bold": 1}, "bold is not a known key. Did you mean 'bolt'?"),
