@@ -10,7 +10,7 @@ from OCP.Interface import Interface_Static
 from OCP.ShapeUpgrade import ShapeUpgrade_ShapeDivideClosed
 from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
 
-from fingertip_shapes import block, bore, box, figures_of, plain
+from fingertip_shapes import block, bore, box, face_at, figures_of, plain
 from lumitip_fab.catalogue.grippers import Gripper
 from lumitip_fab.cli import main
 from lumitip_fab.config.load import Input
@@ -113,10 +113,12 @@ def test_plain_holes_leave_the_counterbore_open(config: Input) -> None:
     }
 
 
-def test_chamfers_change_no_figure(config: Input) -> None:
-    whole = block(*plain(-7, 7))
+def test_chamfers_of_block_and_holes_change_no_figure(config: Input) -> None:
+    whole = block(*plain(-7, 7)) - box((-13, 13), (5, 9), (40, 51))
     foot = [edge for edge in whole.edges() if edge.center().Z < 1e-6]
-    assert figures_of(whole.chamfer(0.8, None, foot), config) == figures_of(whole, config)
+    for tip in (whole, whole.chamfer(0.8, None, foot)):
+        values = figures_of(tip, config, pad=face_at(tip, -8.0), mount=face_at(tip, 0.0, axis=2))
+        assert (values["block_width_mm"], values["block_back_w_mm"]) == (24.0, 16.0)
 
 
 def test_blind_holes_are_pins_if_they_are_in_the_mount_face(config: Input) -> None:
