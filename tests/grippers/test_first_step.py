@@ -33,6 +33,8 @@ def test_a_gauge_is_written_once_its_figures_are_certain(
     assert main(begun(tip, tmp_path, "--pad", str(face_at(tip, -8.0)))) == 0
     assert "No gauge" not in capsys.readouterr().out
     assert trimesh.load(gauge).bounds[:, 0] == pytest.approx([-12.0, 12.0], abs=0.01)
+    assert main(begun(tip, tmp_path)) == 0
+    assert not gauge.exists(), "it was of figures that are open again"
 
 
 def test_a_gauge_that_cannot_be_made_says_why(

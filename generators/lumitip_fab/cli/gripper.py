@@ -3,7 +3,7 @@
 import argparse
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -53,7 +53,8 @@ def new(options: argparse.Namespace) -> int:
     if options.add:
         entry = made[f"{name}_entry.toml"]
         added = dict([wizard.catalogue_with(name, entry, options.file, options.replace)])
-    _write(files, added, options.replace)
+    gauge = out / f"{name}_gauge{_GAUGE}"
+    _write(files, added, options.replace, () if gauge in files else (gauge,))
     _report(options, [str(path) for path in (*files, *added)], tip, notes)
     return 0
 
@@ -90,9 +91,11 @@ def _refuse_options(options: argparse.Namespace) -> None:
         raise InputError(Problem("lumitip-fab gripper", 0, *fault) for fault in faults)
 
 
-def _write(files: Mapping[Path, bytes], added: Mapping[Path, bytes], replace: bool) -> None:
+def _write(
+    files: Mapping[Path, bytes], added: Mapping[Path, bytes], replace: bool, old: Iterable[Path]
+) -> None:
     """Write all files, or none where one would be lost; those that were only added to are not, nor
-    is a gauge, which nobody edits."""
+    is a gauge, which nobody edits. An old one, of other figures, is removed."""
     from lumitip_fab.pipeline.manifest import write_file
 
     text = table_of("grippers/texts.toml")["faults"]["exists"]
@@ -103,6 +106,8 @@ def _write(files: Mapping[Path, bytes], added: Mapping[Path, bytes], replace: bo
             raise OutputError("\n".join(f"{file}: {text}" for file in lost))
         for file, data in {**files, **added}.items():
             write_file(file, data)
+        for file in old:
+            file.unlink(missing_ok=True)
     except OSError as error:
         raise OutputError(f"{error.filename}: cannot be written: {error.strerror}") from error
 
