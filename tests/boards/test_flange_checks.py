@@ -11,9 +11,10 @@ from board_damages import in_part, moved_part, once, swapped_pads
 from damages import failing
 from lumitip_fab.checks import board
 from lumitip_fab.config.load import load
-from lumitip_fab.derive import resolve
+from lumitip_fab.derive import derive, resolve
 from lumitip_fab.derive.boards.supply_input import halved
 from lumitip_fab.design.encoding import read_design
+from lumitip_fab.errors import InputError
 
 pytestmark = pytest.mark.slow
 
@@ -184,3 +185,17 @@ def test_a_divider_halves_the_gate_where_the_tvs_diode_holds_more_than_it_bears(
     assert halved(config) == divides
     parts = config.parts.flange
     assert parts.tvs.clamping_v / (2 if divides else 1) <= parts.transistor.gate_v
+
+
+def test_a_gate_that_a_surge_overcomes_though_it_is_halved_is_refused(
+    design_dir: Path, tmp_path: Path
+) -> None:
+    folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
+    entries = folder / "parts/transistors.toml"
+    entries.write_text(
+        entries.read_text(encoding="utf-8").replace("gate_v = 20.0", "gate_v = 16.0")
+    )
+    with pytest.raises(
+        InputError, match=r"gate bears 16 V; while 'SMBJ24A' holds a surge it is at"
+    ):
+        derive(load(folder / "fingertip.toml"))

@@ -6,6 +6,7 @@ import pytest
 
 from lumitip_fab.cli import main
 from lumitip_fab.cli.readings import readings
+from lumitip_fab.errors import BuildError
 
 MINE = """extends = "fingertip.toml"
 [printer]
@@ -35,6 +36,26 @@ def test_a_build_without_the_readings_of_the_last_one_says_so(
         "that has it, or write it into this one."
         for reading in ("printer.fit_mm = -0.05", "mask.measured_ruler_mm = [100.0, 99.6]")
     ]
+
+
+def test_a_build_that_fails_says_so_too(
+    design_dir: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Its parameters are written before its steps."""
+    plain, mine, out = tmp_path / "fingertip.toml", tmp_path / "mine.toml", tmp_path / "out"
+    plain.write_bytes((design_dir / "fingertip.toml").read_bytes())
+    mine.write_text(MINE, encoding="utf-8")
+    assert build(mine, out) == 0
+
+    def fails(*_: object) -> None:
+        raise BuildError("no room")
+
+    monkeypatch.setattr("lumitip_fab.parts.settings.print_settings", fails)
+    assert build(plain, out) == 1
+    assert "had printer.fit_mm = -0.05, a reading of your prints" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("text", ["printer = 3", "[printer", "\x00", ""])

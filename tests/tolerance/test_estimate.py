@@ -25,11 +25,11 @@ def test_errors_of_many_frames_are_those_of_the_pose_estimator(
     design: Resolved, tried: Bench
 ) -> None:
     frames = tried.frames(drawn(design, 12, 5), tried.lines)
-    known = tried.estimates.nothing_known(12)
     for kind, lines in tried.lines.items():
         values = frames[kind].tared
-        own = tried.estimates.errors(values, lines, known)
-        theirs, ambiguous = tried.estimates.searched(values, lines)
+        estimates = tried.estimates(lines)
+        own = estimates.errors(values, lines, estimates.nothing_known(12))
+        theirs, ambiguous = estimates.searched(values, lines)
         assert ambiguous.mean() < 0.25
         both = [np.abs(errors[~ambiguous]) for errors in (own, theirs)]
         same = (np.abs(own - theirs)[~ambiguous] <= AGREED).all(axis=1)
@@ -44,7 +44,8 @@ def test_an_estimate_follows_a_gross_error_to_its_limit(tried: Bench) -> None:
     lines = Lines("edge", np.array([[0.1, 0.0]]))
     dark = np.full((1, 1, 32), 255.0)
     dark[..., :4] = 0.0
-    errors = tried.estimates.errors(dark, lines, tried.estimates.nothing_known(1))
+    estimates = tried.estimates(lines)
+    errors = estimates.errors(dark, lines, estimates.nothing_known(1))
     assert np.isfinite(errors).all()
     assert np.all(np.abs(errors) <= (2.0, 10.0))
 
@@ -53,7 +54,7 @@ def test_an_estimate_follows_a_gross_error_to_its_limit(tried: Bench) -> None:
 def test_self_calibration_finds_what_learning_finds(design: Resolved, tried: Bench) -> None:
     layout, fingers = design.design.layout, drawn(design, 3, 8)
     frames = tried.frames(fingers, tried.use)["use"].tared
-    found = tried.estimates.learned(frames, tried.use["use"])
+    found = tried.estimates(tried.use["use"]).learned(frames, tried.use["use"])
     model = Model.from_layout(layout)
     for number, values in enumerate(frames):
         learned = learn(layout, values, "edge", most_frames=len(values))
@@ -73,7 +74,8 @@ def test_self_calibration_lowers_the_misfit_of_an_uneven_finger(
     noise = 0.01  # of cables, which the tare alone leaves within 0.03 mm of their places
     assert np.all(learned.mean(axis=0) < 0.9 * tared.mean(axis=0) + noise)
     assert learned.sum() < 0.75 * tared.sum()
-    known = tried.estimates.learned(tried.frames(uneven, tried.use)["use"].tared, tried.use["use"])
+    use = tried.use["use"]
+    known = tried.estimates(use).learned(tried.frames(uneven, tried.use)["use"].tared, use)
     off = known.gains / known.gains.mean(axis=1, keepdims=True) - 1.0 - gains
     assert np.sqrt(np.mean(off**2)) < 0.05
     assert np.allclose(known.drift[:, 0] * GAP_SD_MM, 0.5, atol=0.25)

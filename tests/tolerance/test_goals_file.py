@@ -13,7 +13,7 @@ from lumitip_fab.derive.making.tolerances import spreads
 from lumitip_fab.tolerance.bench import COLUMNS, Case, bench, errors_over
 from lumitip_fab.tolerance.draws import draw
 from lumitip_fab.tolerance.options import Goals
-from lumitip_fab.tolerance.yields import good
+from lumitip_fab.tolerance.yields import good, worst_of
 
 FEW = ("--fingers", "16", "--poses", "4")
 GOALS = """base = "{base}"
@@ -68,7 +68,10 @@ def test_cables_without_a_goal_are_not_tried(
 def test_errors_are_those_over_the_poses_of_all_grasps(design: Resolved) -> None:
     layout, columns = design.design.layout, COLUMNS[1:2]
     models = [Model.from_layout(layout, gap_mm) for gap_mm in (2.0, 5.0)]
-    thin, thick = Case(layout, models[0], 4, 0, (2.0,)), Case(layout, models[1], 4, 0, (2.0, 5.0))
+    thin, thick = (
+        Case(layout, model, 4, 0, cables_mm=cables)
+        for model, cables in zip(models, ((2.0,), (2.0, 5.0)), strict=True)
+    )
     drawn = draw(design.config.catalogue.tolerances, spreads(design.config), len(layout), 6, 0)
     of_thin, of_thick = (bench(case, 3).errors(drawn, columns)[0] for case in (thin, thick))
     found = errors_over((thin, thick), 3, drawn, columns)[0]
@@ -77,6 +80,42 @@ def test_errors_are_those_over_the_poses_of_all_grasps(design: Resolved) -> None
     assert found[:, 2] == pytest.approx(cables)
     assert found[:, 4] == pytest.approx((2.0 * of_thin[:, 4] + 3.0 * of_thick[:, 4]) / 5.0)
     assert (of_thin[:, 2] != of_thick[:, 2]).all()
+
+
+@pytest.mark.parametrize("diameter_mm", [2.0, 4.0, 6.0])
+def test_a_cable_of_any_diameter_is_found_on_a_finger_that_is_built_as_drawn(
+    diameter_mm: float, design: Resolved
+) -> None:
+    """The estimator expects this diameter, as that of a search does."""
+    layout = design.design.layout
+    drawn = draw(design.config.catalogue.tolerances, spreads(design.config), len(layout), 1, 0)
+    exact = {name: 0.0 * of for name, of in drawn.items()}
+    model = Model.from_layout(layout, diameter_mm)
+    found = bench(Case(layout, model, 12, 0, cables_mm=(diameter_mm,))).errors(exact)
+    assert found[1, 0, 2] < 0.08
+    assert found[1, 0, 4] == 0.0
+
+
+def test_edges_without_a_goal_are_not_tried(
+    design_dir: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, goals = str(design_dir / "fingertip.toml"), goals_file(tmp_path, design_dir)
+    text = goals.read_text(encoding="utf-8").replace("edge_mm = 0.9\n", "")
+    goals.write_text(text.replace("[2.0, 4.0]", "[4.0]", 1), encoding="utf-8")
+    assert main(["tolerance", file, "--goals", str(goals), "--out", str(tmp_path), *FEW]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "gap 4 mm: 4 cables of 4 mm" in printed
+    assert "rms errors of 0.9 mm (cables) or less" in printed
+    found = json.loads((tmp_path / "tolerance.json").read_text(encoding="utf-8"))
+    assert [grasp["gap_mm"] for grasp in found["grasps"]] == [4.0], "no cable fits into 2 mm"
+    assert "edge_mm" not in found["columns"]["after tare"]
+
+
+def test_errors_count_in_units_of_their_goals() -> None:
+    rows = np.array([[0.1, 1.0, 0.3, 4.0, 0.0]])
+    inf = np.inf
+    assert worst_of(rows, Goals(0.1, 1.0, 0.6, 2.0)) == pytest.approx(np.array([[1.0, 2.0]]))
+    assert worst_of(rows, Goals(inf, inf, 0.6, inf)) == pytest.approx(np.array([[0.5, 4.0]]))
 
 
 def test_each_error_has_its_own_goal() -> None:

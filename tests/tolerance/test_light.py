@@ -133,9 +133,10 @@ def test_the_receivers_mask_moves_estimates_by_a_factor_that_geometry_predicts(
     shift = np.array([0.1, 0.1])
     moved = changed(exact, mask_shift=[0.0, 0.0, *shift])
     for kind, lines in tried.lines.items():
-        known = tried.estimates.nothing_known(1)
+        estimates = tried.estimates(lines)
+        known = estimates.nothing_known(1)
         off, straight = (
-            tried.estimates.errors(tried.frames(one, {kind: lines})[kind].tared, lines, known)
+            estimates.errors(tried.frames(one, {kind: lines})[kind].tared, lines, known)
             for one in (moved, exact)
         )
         along = shift @ np.stack([-np.sin(lines.poses[:, 0]), np.cos(lines.poses[:, 0])])

@@ -187,7 +187,7 @@ def test_indices_are_printed_with_their_draws_and_deviation(
     def take(count: int, seed: int, part: int = 0) -> Any:
         return draw(table, ones, 4, count, seed, part)
 
-    found = sensitivities(linear, take, 64, 0)
+    found = sensitivities(linear, take, 64, Options())
     assert found["gap"]["total"]["position"] == pytest.approx(1.0, abs=0.3)
     assert found["hole"]["total"]["position"] == 0.0
     entries = {"gap": {**alone["tolerances"]["gap"], **found["gap"]}}

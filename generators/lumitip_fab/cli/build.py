@@ -35,6 +35,8 @@ def build(
         progress: called at the end of each task.
         only: names of the steps to run; empty for all.
 
+    Prints each reading of the user's prints that the folder had, and has no more.
+
     Raises:
         InputError: if the file is rejected; then nothing is written.
         BuildError: if an artefact could not be made.
@@ -50,7 +52,12 @@ def build(
         found = resolve(load(file))
         return found.design, documents(found.config, found.design, out)
 
-    return pipeline.build(input_hash(file), resolved, out, STEPS, progress, only)
+    before = readings(out)
+    try:
+        return pipeline.build(input_hash(file), resolved, out, STEPS, progress, only)
+    finally:  # an interrupted build has written its parameters, too
+        for line in lost(before, file, out):
+            ERR.print(line, soft_wrap=True)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -63,7 +70,6 @@ def run(options: argparse.Namespace) -> int:
         TextColumn("left"),
     )
     silent = options.quiet or options.json
-    before = readings(options.out)
     with Progress(*columns, console=ERR, disable=silent, transient=True) as bar:
         shown = bar.add_task("reading", total=None)
 
@@ -71,8 +77,6 @@ def run(options: argparse.Namespace) -> int:
             bar.update(shown, description=name, completed=done, total=total)
 
         report = build(options.file, options.out, progress, options.only)
-    for line in lost(before, options.file, options.out):
-        ERR.print(line, soft_wrap=True)
     if options.json:
         summary = {
             "design_hash": report.origin.design_hash,

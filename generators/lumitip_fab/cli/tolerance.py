@@ -57,11 +57,11 @@ def _asked(options: argparse.Namespace) -> Options:
 
 
 def _of_file(file: Path, targets: Targets, sizes: dict[str, int]) -> Options:
-    """Goals of a file; edges are tried in each of its gaps, cables where they have a goal."""
+    """Goals and grasps of a file; a kind of object without a goal is not tried."""
     figures = ("edge_mm", "edge_deg", "cable_mm", "cable_deg")
     goals = Goals(*(targets.errors.get(name, math.inf) for name in figures))
+    edges = min(goals.edge_mm, goals.edge_deg) < math.inf
     cables = targets.cables_mm if min(goals.cable_mm, goals.cable_deg) < math.inf else ()
-    grasps = tuple(
-        Grasp(gap_mm, tuple(d for d in cables if d <= gap_mm)) for gap_mm in targets.gaps_mm
-    )
+    fitting = [(gap_mm, tuple(d for d in cables if d <= gap_mm)) for gap_mm in targets.gaps_mm]
+    grasps = tuple(Grasp(gap_mm, thin, edges) for gap_mm, thin in fitting if thin or edges)
     return Options(goals, grasps, file=shown_path(file), **sizes)

@@ -1,7 +1,7 @@
 """Errors of many built fingers: their frames, and the estimates of these, as numbers by finger."""
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 from scipy.stats import qmc
@@ -27,7 +27,6 @@ LEARNING = 40
 """Edges by which a finger calibrates itself."""
 AGREED = (0.05, 0.2)
 """Difference of two estimates of one frame that counts as none (mm, degrees)."""
-_CASES = 16  # whose tables are kept in each process
 _REACH = 0.35  # of the grid's smaller extent: how far from its middle lines lie
 
 
@@ -40,8 +39,10 @@ class Case:
     poses: int
     """Of edges, and as many of cables of each diameter, in each set."""
     seed: int
+    edges: bool = True
+    """Whether edges are tried."""
     cables_mm: tuple[float, ...] = (DIAMETER_MM,)
-    """Diameters of the cables (mm)."""
+    """Diameters of the cables (mm), which the estimator expects."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,16 +65,13 @@ class Bench:
             case: the drawing.
             number: of the set of poses, below `POSE_SETS`.
         """
-        self._layout, self._model = case.layout, case.model
+        self._case, self._layout, self._model = case, case.layout, case.model
         self._rays = _rays(case)
-        self.estimates = _estimates(case)
         self._empty = Twin(case.layout, case.model).empty
-        self.lines = {
-            "edge": lines(case, "edge", case.poses, number),
-            **{
-                f"cable {diameter_mm:g} mm": lines(case, "cable", case.poses, number, diameter_mm)
-                for diameter_mm in case.cables_mm
-            },
+        self.lines = {"edge": lines(case, "edge", case.poses, number)} if case.edges else {}
+        self.lines |= {
+            f"cable {diameter_mm:g} mm": lines(case, "cable", case.poses, number, diameter_mm)
+            for diameter_mm in case.cables_mm
         }
         """True poses."""
         self.use = {"use": lines(case, "edge", LEARNING, POSE_SETS + number)}
@@ -85,10 +83,14 @@ class Bench:
             for name, of in (self.lines | self.use).items()
         }
 
+    def estimates(self, of: Lines) -> Estimates:
+        """The estimates of lines: they expect the diameter of these cables."""
+        return _estimates(self._case, of.diameter_mm)
+
     def errors(self, draws: Draws, columns: tuple[str, ...] = COLUMNS) -> Floats:
         """Errors of fingers over their poses, shape `(columns, fingers, 5)`: rms of offset (mm)
         and angle (degrees) of edges, then of cables, and the share of the poses with a gross error.
-        Where no cable is tried, its errors are NaN.
+        Errors of a kind that is not tried are NaN.
 
         Args:
             draws: deviations of the fingers.
@@ -96,16 +98,17 @@ class Bench:
         """
         learning = COLUMNS[2] in columns
         frames = self.frames(draws, self.lines | (self.use if learning else {}))
-        nothing = known = self.estimates.nothing_known(len(draws["gap"]))
+        (use,) = self.use.values()
+        nothing = known = self.estimates(use).nothing_known(len(draws["gap"]))
         if learning:
-            known = self.estimates.learned(frames["use"].tared, self.use["use"])
+            known = self.estimates(use).learned(frames["use"].tared, use)
         rows = []
         for column in columns:
             missed: dict[str, list[Floats]] = {kind: [] for kind in KINDS}
             for name, of in self.lines.items():
                 values = frames[name].raw if column == COLUMNS[0] else frames[name].tared
                 learned = known if column == COLUMNS[2] else nothing
-                missed[of.kind].append(self.estimates.errors(values, of, learned))
+                missed[of.kind].append(self.estimates(of).errors(values, of, learned))
             rms = [_rms(missed[kind], len(nothing.gains)) for kind in KINDS]
             every = np.concatenate([one for each in missed.values() for one in each], axis=1)
             rows.append(np.column_stack([*rms, gross(every).mean(axis=1)]))
@@ -119,12 +122,12 @@ class Bench:
             `AGREED`, that `PoseEstimator` flags as ambiguous, and that have no flag but a
             gross error.
         """
-        frames, known = self.frames(draws, self.lines), self.estimates.nothing_known
+        frames = self.frames(draws, self.lines)
         agreed, flagged, unseen = [], [], []
         for name, of in self.lines.items():
-            tared = frames[name].tared
-            own = self.estimates.errors(tared, of, known(len(tared)))
-            whole, ambiguous = self.estimates.searched(tared, of)
+            tared, estimates = frames[name].tared, self.estimates(of)
+            own = estimates.errors(tared, of, estimates.nothing_known(len(tared)))
+            whole, ambiguous = estimates.searched(tared, of)
             agreed.append((np.abs(own - whole) <= AGREED).all(axis=2) & ~ambiguous)
             flagged.append(ambiguous)
             unseen.append(gross(whole) & ~ambiguous)
@@ -178,17 +181,17 @@ def lines(
     return Lines(kind, places, diameter_mm)
 
 
-@lru_cache(maxsize=_CASES)
+@cache
 def _rays(case: Case) -> Rays:
     return Rays(case.layout, case.model)
 
 
-@lru_cache(maxsize=_CASES)
-def _estimates(case: Case) -> Estimates:
-    return Estimates(case.layout, case.model)
+@cache
+def _estimates(case: Case, diameter_mm: float) -> Estimates:
+    return Estimates(case.layout, case.model, diameter_mm)
 
 
-@lru_cache(maxsize=_CASES * POSE_SETS)
+@cache
 def bench(case: Case, number: int = 0) -> Bench:
     """The bench of a case and a set of poses, one in each process."""
     return Bench(case, number)
@@ -199,7 +202,8 @@ def errors_over(
 ) -> Floats:
     """Errors of fingers over the poses of all cases, see `Bench.errors`."""
     found = np.array([bench(case, number).errors(draws, columns) for case in cases])
-    edges, cables = np.ones(len(cases)), np.array([float(len(case.cables_mm)) for case in cases])
+    edges = np.array([float(case.edges) for case in cases])
+    cables = np.array([float(len(case.cables_mm)) for case in cases])
     mean_square = [
         np.average(np.nan_to_num(found[..., some]) ** 2, axis=0, weights=counts)
         if counts.any()
@@ -208,3 +212,9 @@ def errors_over(
     ]
     share = np.average(found[..., 4:], axis=0, weights=edges + cables)
     return np.concatenate([*map(np.sqrt, mean_square), share], axis=-1)
+
+
+def forget() -> None:
+    """Drop the tables of all cases in this process."""
+    for kept in (_rays, _estimates, bench):
+        kept.cache_clear()

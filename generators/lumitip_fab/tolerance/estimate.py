@@ -51,14 +51,15 @@ class Known:
 class Estimates:
     """Estimates of many frames, by an estimator that believes in a drawing."""
 
-    def __init__(self, layout: Layout, model: Model) -> None:
+    def __init__(self, layout: Layout, model: Model, diameter_mm: float) -> None:
         """Prepare the estimator.
 
         Args:
             layout: the cells.
             model: optics that it expects.
+            diameter_mm: of the cables that it expects.
         """
-        self._estimator = PoseEstimator(layout, model)
+        self._estimator = PoseEstimator(layout, model, diameter_mm=diameter_mm)
         self._drifts = self._estimator.search.drifts
 
     def nothing_known(self, fingers: int) -> Known:

@@ -37,11 +37,12 @@ class Goals:
 
 @dataclass(frozen=True)
 class Grasp:
-    """A gap in which fingers are tried with edges, and with cables of some diameters."""
+    """A gap in which fingers are tried with cables of some diameters, and with edges or without."""
 
     gap_mm: float = 3.0
     """Gap that the estimator expects (mm)."""
     cables_mm: tuple[float, ...] = (DIAMETER_MM,)
+    edges: bool = True
 
 
 @dataclass(frozen=True)

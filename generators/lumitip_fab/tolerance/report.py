@@ -80,11 +80,11 @@ def _tried(study: dict[str, Any]) -> str:
     """What each pair of fingers was tried with."""
     poses, tried = study["poses"], []
     for grasp in study["grasps"]:
-        text = f"gap {grasp['gap_mm']:g} mm: {poses['edge']} edges"
+        objects = [f"{poses['edge']} edges"] if grasp["edges"] else []
         if diameters := [f"{diameter_mm:g}" for diameter_mm in grasp["cables_mm"]]:
-            text += f", {poses['cable']} cables of {', '.join(diameters)} mm"
-            text += " each" * (len(diameters) > 1)
-        tried.append(text)
+            each = " each" * (len(diameters) > 1)
+            objects.append(f"{poses['cable']} cables of {', '.join(diameters)} mm{each}")
+        tried.append(f"gap {grasp['gap_mm']:g} mm: {', '.join(objects)}")
     return "; ".join(tried)
 
 

@@ -20,7 +20,7 @@ from lumitip_fab.config.messages import shown_path
 from lumitip_fab.derive.making.tolerances import MODEL_VERSION, fingerprint, spreads
 from lumitip_fab.errors import BuildError, InputError, Problem
 from lumitip_fab.pipeline.fingerprint import made_with
-from lumitip_fab.tolerance.bench import COLUMNS, POSE_SETS, Case, bench, errors_over
+from lumitip_fab.tolerance.bench import COLUMNS, POSE_SETS, Case, bench, errors_over, forget
 from lumitip_fab.tolerance.draws import FACTORS, Draws, directions, draw
 from lumitip_fab.tolerance.options import GOOD_PERCENT, MASK_FINGERS, Goals, Options
 from lumitip_fab.tolerance.sobol import indices, mixed
@@ -73,7 +73,7 @@ def study(
     with on_cores(cases, cores) as errors:
         columns = errors(drawn, COLUMNS)
         draws = draws_of(options.fingers)
-        sensitive = sensitivities(errors, take, draws, options.seed) if draws else {}
+        sensitive = sensitivities(errors, take, draws, options) if draws else {}
         names = sorted(sensitive, key=lambda name: -max(sensitive[name]["total"].values()))
         without = {
             name: float(
@@ -97,6 +97,8 @@ def study(
         }
         for name, entry in ((name, getattr(table, name)) for name in names or FACTORS)
     }
+    compared = _compared(cases, take(_SEARCHED, options.seed))
+    forget()
     return {
         "design": config.parameters.name,
         **_fingerprint(config, layout, options),
@@ -105,7 +107,8 @@ def study(
         "evidence": EVIDENCE,
         "goals": options.goals.set,
         "grasps": [
-            {"gap_mm": grasp.gap_mm, "cables_mm": list(grasp.cables_mm)} for grasp in options.grasps
+            {"gap_mm": grasp.gap_mm, "edges": grasp.edges, "cables_mm": list(grasp.cables_mm)}
+            for grasp in options.grasps
         ],
         "fingers": options.fingers,
         "poses": {"edge": options.poses, "cable": options.poses, "sets": POSE_SETS},
@@ -122,7 +125,7 @@ def study(
             "fingers": len(few["gap"]),
             **_yield(mask_good),
         },
-        "pose_estimator": _compared(cases, take(_SEARCHED, options.seed)),
+        "pose_estimator": compared,
     }
 
 
@@ -168,6 +171,7 @@ def cases_of(config: Input, layout: Layout, options: Options) -> tuple[Case, ...
             Model.from_layout(layout, grasp.gap_mm),
             options.poses,
             options.seed,
+            grasp.edges,
             grasp.cables_mm,
         )
         for grasp in options.grasps
@@ -220,20 +224,21 @@ def draws_of(fingers: int) -> int:
 
 
 def sensitivities(
-    errors: Errors, take: Callable[..., Draws], count: int, seed: int
+    errors: Errors, take: Callable[..., Draws], count: int, options: Options
 ) -> dict[str, dict[str, dict[str, float]]]:
-    """Sobol indices of every deviation for the errors after a tare.
+    """Sobol indices of every deviation for the errors after a tare, see `worst_of`.
 
     Args:
         errors: of fingers.
         take: draws fingers by count, seed and part.
         count: draws of each of the two sets, a power of 2.
-        seed: of the study.
+        options: goals and seed of the study.
     """
+    seed = options.seed
     a, b = take(count, seed), take(count, seed, 1)
     sets = [a, b, *(mixed(a, b, name) for name in FACTORS)]
     together = {name: np.concatenate([one[name] for one in sets]) for name in FACTORS}
-    worst = worst_of(errors(together, _TARED)[0]).T
+    worst = worst_of(errors(together, _TARED)[0], options.goals).T
     of_a, of_b, *others = np.split(worst, len(sets), axis=1)
     found = indices(of_a, of_b, np.array(others), seed)
     return {
@@ -258,7 +263,7 @@ def _column(rows: Floats, goals: Goals) -> dict[str, Any]:
             for name, values in zip(
                 names, np.percentile(rows[:, :4], _PERCENTILES, axis=0).T, strict=True
             )
-            if np.isfinite(values).all()  # no cables, no errors of cables
+            if np.isfinite(values).all()  # a kind that is not tried has no errors
         },
     }
 

@@ -15,10 +15,14 @@ Good = NDArray[np.bool_]
 _Z = 1.96  # of 95 %
 
 
-def worst_of(rows: Floats) -> Floats:
-    """Errors of position (mm) and angle (degrees), the worse of edges and cables, from those of
-    both kinds, shape `(fingers, 2)`."""
-    return np.fmax(rows[:, :2], rows[:, 2:4])  # NaN where no cable was tried
+def worst_of(rows: Floats, goals: Goals) -> Floats:
+    """Errors of position and angle in units of their goals, the worse of edges and cables, shape
+    `(fingers, 2)`; of a figure without any goal in mm or degrees."""
+    units = np.array(astuple(goals)).reshape(2, 2)  # kind and figure
+    units[:, np.isinf(units).all(axis=0)] = 1.0
+    edges, cables = (rows[:, :4].reshape(-1, 2, 2) / units).transpose(1, 0, 2)
+    worst: Floats = np.fmax(edges, cables)  # NaN where a kind was not tried
+    return worst
 
 
 def good(rows: Floats, goals: Goals) -> Good:

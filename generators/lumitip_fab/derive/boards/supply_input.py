@@ -124,6 +124,9 @@ def _refuse_gate(config: Input, faults: Diagnostics) -> None:
     package = config.parts.flange.resistor
     sold, allowed_w = ratings.sold_ohm(ohm), ratings.MOST_RESISTOR_LOAD * package.power_w
     faults.unless(math.isclose(sold, ohm), "gate_not_sold", ohm=ohm, sold=sold)
+    part, tvs = config.parts.flange.transistor, config.parts.flange.tvs
+    surge_v = tvs.clamping_v / (2 if halved(config) else 1)
+    faults.unless(surge_v <= part.gate_v, "gate_surge", surge_v=surge_v, gate_v=part.gate_v)
     load_w = (volts * (1 + ratings.SUPPLY_TOLERANCE)) ** 2 / (
         ohm * (1 - ratings.RESISTOR_TOLERANCE)
     )

@@ -12,6 +12,8 @@ from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import Cells
 from lumitip_fab.derive.wiring.ratings import MOST_RESISTOR_LOAD
 from lumitip_fab.derive.wiring.sources import (
+    COLDEST_C,
+    HOTTEST_C,
     LEAST_RESISTOR_SHARE,
     String,
     least_supply_v,
@@ -113,8 +115,9 @@ def string_problems(config: Input, strings: tuple[String, ...]) -> Iterator[tupl
     if max(highest, current) > led.max_current_ma:
         yield (
             "emitter.current_ma",
-            f"is {current:g}, up to {highest:.1f} mA with all tolerances; "
-            f"{p.emitter.led!r} is rated for {led.max_current_ma:g} mA",
+            f"is {current:g}, up to {highest:.1f} mA with all tolerances, {COLDEST_C:g} to "
+            f"{HOTTEST_C:g} °C; {p.emitter.led!r} is rated for {led.max_current_ma:g} mA. Reduce "
+            "it, or emitter.string_leds.",
         )
     load = max(string.high_load_w for string in strings)
     allowed = MOST_RESISTOR_LOAD * package.power_w
@@ -122,8 +125,9 @@ def string_problems(config: Input, strings: tuple[String, ...]) -> Iterator[tupl
         yield (
             "emitter.resistor",
             f"is {p.emitter.resistor!r}, with a power of up to {1000 * load:.0f} mW at "
-            f"{current:g} mA and all tolerances; the limit is "
-            f"{1000 * allowed:.0f} mW ({100 * MOST_RESISTOR_LOAD:g} % of its rating)",
+            f"{current:g} mA, all tolerances, {COLDEST_C:g} to {HOTTEST_C:g} °C; the limit is "
+            f"{1000 * allowed:.0f} mW ({100 * MOST_RESISTOR_LOAD:g} % of its rating). Use a larger "
+            "one, or fewer emitter.string_leds.",
         )
     if p.emitter.drive == "source":
         yield from source_problems(config, strings)
