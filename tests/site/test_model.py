@@ -11,7 +11,7 @@ from playwright.sync_api import Page
 from lumitip_fab.checks.readers.scene import read_scene
 from lumitip_fab.checks.readers.vertices import corners_mm
 from lumitip_fab.site.library import three_js
-from site_page import Opened, marked
+from site_page import Opened, differ, marked, seen
 
 pytestmark = pytest.mark.slow
 
@@ -20,18 +20,6 @@ PLACES = """names => names.map(name => {
     const at = model.middleOf(model.bodies.get(name)).project(model.camera);
     return [box.x + box.width * (at.x + 1) / 2, box.y + box.height * (1 - at.y) / 2];
 })"""
-
-
-def seen(tab: Page) -> np.ndarray:
-    """The colours of the view, shape `(height, width, 3)`, once it stands still."""
-    tab.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
-    shot = tab.locator("#canvas").screenshot()
-    return np.asarray(Image.open(BytesIO(shot)).convert("RGB"), int)
-
-
-def differ(one: np.ndarray, other: np.ndarray) -> float:
-    """Share of the pixels that differ."""
-    return float((abs(one - other) > 24).any(axis=2).mean())
 
 
 def bodies(tab: Page) -> set[str]:
