@@ -176,6 +176,9 @@ async def _scene(
     if finger.tip.simulated is None:
         raise ViewError(f"{finger.url} is not simulated; only the object of a twin:// can be moved")
     finger.tip.simulated.place(body)
+    placed = finger.tip.simulated.placement()["values"]
+    if "diameter_mm" in placed:
+        finger.estimates.expect(placed["diameter_mm"])
     return {}
 
 
