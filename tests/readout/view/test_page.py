@@ -281,3 +281,14 @@ def test_page_comes_back_with_the_token(serve: Serve, page: Page) -> None:
     server = serve(TWIN, token="hand-made")
     opened(page, server)
     assert "hand-made" not in page.url
+
+
+def test_the_address_can_be_followed_from_another_site(serve: Serve, page: Page) -> None:
+    server = serve(TWIN, token="hand-made")
+    link = f"<a href='{server.url}'>here</a>"
+    page.route(
+        "http://example.org/", lambda route: route.fulfill(body=link, content_type="text/html")
+    )
+    page.goto("http://example.org/")
+    page.locator("a").click()
+    page.wait_for_selector(".finger[data-seq]")
