@@ -8,6 +8,7 @@ board is `emitter:Q18`.
 import re
 from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
+from string import digits
 
 from lumitip_fab.site.boards import drawn_parts
 from lumitip_fab.site.folder import Folder, board_path
@@ -37,6 +38,12 @@ class Targets:
         """
         design = folder.design
         self.fingers = [finger.name for finger in design.fingers]
+        letters = {finger.name: finger.cells_hold.letter for finger in design.fingers}
+        self._elsewhere = {
+            finger: {letter for other, letter in letters.items() if other != finger}
+            for finger in letters
+        }
+        """Letters of the cells of the other finger."""
         auxiliary = [board.name for board in design.auxiliary_boards]
         self.printed = printed
         self.boards = [*self.fingers, *auxiliary]
@@ -123,13 +130,21 @@ class Targets:
         words = _WORD.findall(rest)
         found += [f"{board}:{word}" for word in words if word in self._nets.get(board, ())]
         if file.startswith(_SCENES):
-            found += self._of_scene(words)
+            found += self._of_scene([*_FINGER.findall(file.replace("_", " ")), *words])
         return self._shown([*found, *self._of_file(file)])
 
     def _of_scene(self, words: list[str]) -> Iterator[str]:
-        """Bodies that are named by their kind; else the backings, which carry all others."""
-        fingers = [finger for finger in self.fingers if finger in words] or self.fingers
-        kinds = [f"{finger}.{word}" for finger in fingers for word in words]
+        """Bodies that are named by their kind; else the backings, which carry all others. Where no
+        finger is named, the reference of an LED or photodetector is that of a cell."""
+        named = [finger for finger in self.fingers if finger in words]
+        elsewhere = {} if named else self._elsewhere
+        fingers = named or self.fingers
+        kinds = [
+            f"{finger}.{word}"
+            for finger in fingers
+            for word in words
+            if word.rstrip(digits) not in elsewhere.get(finger, ())
+        ]
         yield from self._shown(kinds) or (f"{finger}.backing" for finger in fingers)
 
     def of_line(self, group: str, item: str, part: str) -> list[str]:
