@@ -1,6 +1,8 @@
 """Lines of the page's tables lead to places: parts, nets, bodies, boards and prints."""
 
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -14,7 +16,7 @@ pytestmark = pytest.mark.slow
 
 PLACELESS = {"bom", "derivation", "firmware", "gauge_card", "heat", "manifest", "manual_pages"}
 PLACELESS |= {"mould", "packs", "printing"}  # notes: amounts, hours, settings
-MOULD_NOTES = {"mould.clamped", "mould.masses", "mould.note", "mould.volume"}
+MOULD_NOTES = {"mould.masses", "mould.note"}
 
 
 def test_every_name_that_a_line_shows_is_in_a_panel(opened: Opened) -> None:
@@ -48,11 +50,15 @@ def test_checks_of_parts_and_boards_lead_to_a_place(opened: Opened) -> None:
     assert {name.partition(".")[2] for name in bodies} == {"backing", "silicone"}
 
 
+@cache
+def _rows(folder: Path) -> list[dict[str, Any]]:
+    files = Folder.of(folder)
+    return check_rows(files, Targets(files, [part.file for part in prints(files)]))
+
+
 def _show(folder: Path, check: str, subject: str) -> set[str]:
     """All that the lines of a check of a subject show."""
-    files = Folder.of(folder)
-    targets = Targets(files, [part.file for part in prints(files)])
-    rows = [row for row in check_rows(files, targets) if row["check"] == check]
+    rows = [row for row in _rows(folder) if row["check"] == check]
     return {name for row in rows if row["subject"].startswith(subject) for name in row["show"]}
 
 
@@ -66,6 +72,15 @@ def test_a_line_shows_the_finger_of_its_file(site: Path) -> None:
 def test_a_cell_without_a_finger_is_an_led_and_a_photodetector(site: Path) -> None:
     """The emitter has a Q1 too, its MOSFET."""
     assert _show(site, "assembly.facing", "assembly/assembly.glb") == {"emitter.D1", "receiver.Q1"}
+
+
+def test_a_print_that_a_note_names_is_shown(site: Path) -> None:
+    casting = "mould/emitter_casting.md"
+    assert _show(site, "mould.volume", casting) == {"print.mould/emitter_mould.stl"}
+    assert _show(site, "mould.clamped", casting) == {"print.mould/clamp.stl"}
+    assert "print.mould/prop.stl" in _show(site, "manifest.frames", "manifest.json: mould/prop")
+    (worst,) = _show(site, "bom.prints", "bom.csv")
+    assert worst.startswith("print.")
 
 
 def test_a_net_lights_up_on_its_board(opened: Opened) -> None:

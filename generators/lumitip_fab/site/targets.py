@@ -17,6 +17,7 @@ _REFERENCE = re.compile(r"\b[A-Z]{1,3}\d+\b")
 _NODE = re.compile(r"\b(?:emitter|receiver|flange|holder|gripper|coupling|robot)\.[A-Za-z]\w*")
 _FINGER = re.compile(r"\b(emitter|receiver)\b")
 _PLACE = re.compile(r"at \((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\) of the file's frame")
+_PRINT = re.compile(r"[\w./-]+\.(?:stl|3mf)\b")
 _WORD = re.compile(r"[^\s,;:()]+")
 _EVERYWHERE = "GND"
 """Its fills are all over each board."""
@@ -118,7 +119,8 @@ class Targets:
             yield _OF_BREAKOUT if name == "breakout" else f"{name}.board"
 
     def of_measurement(self, subject: str, note: str) -> list[str]:
-        """Targets of a measurement: parts and bodies that it names, and those of its file."""
+        """Targets of a measurement: parts, bodies and prints that it names, and those of
+        its file."""
         file = re.split(r"[:\s]", subject, maxsplit=1)[0]
         rest = f"{subject[len(file) :]} {note}"
         found = _NODE.findall(f"{rest} ")
@@ -131,7 +133,8 @@ class Targets:
         found += [f"{board}:{word}" for word in words if word in self._nets.get(board, ())]
         if file.startswith(_SCENES):
             found += self._of_scene([*_FINGER.findall(file.replace("_", " ")), *words])
-        return self._shown([*found, *self._of_file(file)])
+        files = [file, *_PRINT.findall(rest)]
+        return self._shown([*found, *(name for each in files for name in self._of_file(each))])
 
     def _of_scene(self, words: list[str]) -> Iterator[str]:
         """Bodies that are named by their kind; else the backings, which carry all others. Where no
