@@ -87,6 +87,9 @@ def test_keys_go_from_cell_to_cell(opened: Opened) -> None:
     assert marked(tab, "view") == [5]
     tab.locator("#number").fill("31")
     tab.locator("#number").press("Enter")
+    tab.locator("#number").fill("")
+    tab.locator("#number").press("Enter")
+    assert tab.locator("#number").input_value() == "31"
     tab.locator("#after").click()
     assert marked(tab, "view") == [0]
 
