@@ -97,7 +97,10 @@ def test_all_of_the_exploded_system_is_in_the_picture(opened: Opened) -> None:
 
 def test_the_face_of_a_finger_is_seen_without_its_film(opened: Opened) -> None:
     tab = opened()
+    tab.locator("#cut").select_option("0")
     tab.get_by_role("button", name="Receiver face, film off").click()
+    assert tab.locator("#cut").input_value() == "" and tab.locator("#cut-at").is_disabled()
+    assert tab.evaluate("lumitip.model.renderer.clippingPlanes.length") == 0
     shown = bodies(tab)
     assert "receiver.film" not in shown and {"receiver.Q1", "receiver.board"} <= shown
     assert not tab.locator('#switches [data-kind="receiver.film"]').is_checked()

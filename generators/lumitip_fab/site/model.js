@@ -97,6 +97,8 @@ function startModel() {
   });
   for (const [finger, side] of [["emitter", -1], ["receiver", 1]]) {
     byId(`look-${finger}`).addEventListener("click", () => {
+      byId("cut").value = ""; // one along the faces may have taken this one away
+      cut();
       switched((kind) => kind.startsWith(`${finger}.`) && kind !== `${finger}.film`, true);
       switched((kind) => kind === `${finger}.film`, false);
       switched((kind) => !kind.startsWith(`${finger}.`), false);
