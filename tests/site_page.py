@@ -2,8 +2,11 @@
 
 import importlib.util
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 
+import numpy as np
+from PIL import Image
 from playwright.sync_api import Page
 
 Opened = Callable[..., Page]
@@ -29,3 +32,15 @@ def record(tab: Page) -> dict[str, str]:
     script = """e => [...e.querySelectorAll("dt")].map(
         d => [d.textContent, d.nextElementSibling.textContent])"""
     return dict(tab.locator("#rows").evaluate(script))
+
+
+def seen(tab: Page) -> np.ndarray:
+    """The colours of the view, shape `(height, width, 3)`, once it stands still."""
+    tab.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    shot = tab.locator("#canvas").screenshot()
+    return np.asarray(Image.open(BytesIO(shot)).convert("RGB"), int)
+
+
+def differ(one: np.ndarray, other: np.ndarray) -> float:
+    """Share of the pixels that differ."""
+    return float((abs(one - other) > 24).any(axis=2).mean())

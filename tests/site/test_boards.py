@@ -48,6 +48,18 @@ def test_mask_openings_and_silkscreen_can_be_seen(opened: Opened, layer: str) ->
     assert tab.evaluate(SHOWN, f".{layer}[data-side=back]") > 0
 
 
+def test_marked_copper_is_seen_where_copper_is_off(opened: Opened) -> None:
+    tab = opened("#cell-17")
+    for side in ("front", "back"):
+        tab.locator(f"#{side}").uncheck()
+    copper = "#board-receiver .layer path"
+    marks = tab.evaluate(SHOWN, f"{copper}.own") + tab.evaluate(SHOWN, f"{copper}.shared")
+    assert 0 < marks == tab.evaluate(SHOWN, copper)
+    tab.locator("#query").fill("board.clearance flange")
+    tab.locator("#check-table tbody .show").first.click()
+    assert tab.evaluate(SHOWN, "#boards .layer path.lit") > 0
+
+
 def test_openings_are_as_wide_as_the_pads_and_the_clearance(site: Path) -> None:
     board = read_board(site / "boards/receiver/receiver.kicad_pcb")
     for front, layer in ((True, board.layers[0]), (False, board.layers[-1])):

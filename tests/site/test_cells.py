@@ -87,6 +87,9 @@ def test_keys_go_from_cell_to_cell(opened: Opened) -> None:
     assert marked(tab, "view") == [5]
     tab.locator("#number").fill("31")
     tab.locator("#number").press("Enter")
+    tab.locator("#number").fill("")
+    tab.locator("#number").press("Enter")
+    assert tab.locator("#number").input_value() == "31"
     tab.locator("#after").click()
     assert marked(tab, "view") == [0]
 
@@ -120,9 +123,11 @@ def test_every_record_is_that_of_the_files(site: Path) -> None:
 def test_wires_and_shared_parts_are_marked(opened: Opened, site: Path) -> None:
     with (site / "wiring/cables.csv").open(encoding="utf-8", newline="") as file:
         cables = list(csv.DictReader(file))
-    line = Layout.load(site / "layout.json").adc_pin[17]
-    needed = [w for w in cables if w["signal"] in {line, "S0", "S1", "S2"}]
-    needed += [w for w in cables if w["from_board"] == "emitter"]
+    layout = Layout.load(site / "layout.json")
+    others = set(layout.adc_pin) - {layout.adc_pin[17]}
+    needed = [w for w in cables if w["signal"] not in others]
+    supplies = {("receiver", "GND"), ("receiver", "3V3"), ("breakout", "24V"), ("breakout", "5V")}
+    assert supplies < {(w["from_board"], w["signal"]) for w in needed}
     tab = opened("#cell-17")
     wires = tab.evaluate("[...document.querySelectorAll('.wire.on')].map(e => e.dataset.wire)")
     assert sorted(wires) == sorted(w["wire"] for w in needed)

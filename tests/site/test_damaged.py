@@ -129,5 +129,6 @@ def test_a_browser_without_webgl_shows_the_rest(edited: Path, opened: Opened) ->
     text = "There is no 3D view: this browser has no WebGL 2."
     assert tab.locator("#no-model").text_content() == text
     assert tab.locator("#no-bed").text_content() == text
+    assert not tab.locator("#bed-panel").is_visible()
     tab.evaluate("choose(3)")
     assert tab.locator("#record-h").text_content() == "Cell 3"

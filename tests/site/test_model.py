@@ -11,7 +11,7 @@ from playwright.sync_api import Page
 from lumitip_fab.checks.readers.scene import read_scene
 from lumitip_fab.checks.readers.vertices import corners_mm
 from lumitip_fab.site.library import three_js
-from site_page import Opened, marked
+from site_page import Opened, differ, marked, seen
 
 pytestmark = pytest.mark.slow
 
@@ -20,18 +20,6 @@ PLACES = """names => names.map(name => {
     const at = model.middleOf(model.bodies.get(name)).project(model.camera);
     return [box.x + box.width * (at.x + 1) / 2, box.y + box.height * (1 - at.y) / 2];
 })"""
-
-
-def seen(tab: Page) -> np.ndarray:
-    """The colours of the view, shape `(height, width, 3)`, once it stands still."""
-    tab.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
-    shot = tab.locator("#canvas").screenshot()
-    return np.asarray(Image.open(BytesIO(shot)).convert("RGB"), int)
-
-
-def differ(one: np.ndarray, other: np.ndarray) -> float:
-    """Share of the pixels that differ."""
-    return float((abs(one - other) > 24).any(axis=2).mean())
 
 
 def bodies(tab: Page) -> set[str]:
@@ -109,7 +97,10 @@ def test_all_of_the_exploded_system_is_in_the_picture(opened: Opened) -> None:
 
 def test_the_face_of_a_finger_is_seen_without_its_film(opened: Opened) -> None:
     tab = opened()
+    tab.locator("#cut").select_option("0")
     tab.get_by_role("button", name="Receiver face, film off").click()
+    assert tab.locator("#cut").input_value() == "" and tab.locator("#cut-at").is_disabled()
+    assert tab.evaluate("lumitip.model.renderer.clippingPlanes.length") == 0
     shown = bodies(tab)
     assert "receiver.film" not in shown and {"receiver.Q1", "receiver.board"} <= shown
     assert not tab.locator('#switches [data-kind="receiver.film"]').is_checked()

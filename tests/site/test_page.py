@@ -39,6 +39,12 @@ def test_everyone_can_read_it(opened: Opened, size: str, scheme: str) -> None:
     assert len(found["passes"]) > 20
 
 
+def test_a_long_name_does_not_widen_the_page(opened: Opened) -> None:
+    tab = opened("", viewport=SIZES["phone"], is_mobile=True, has_touch=True)
+    tab.evaluate("document.querySelector('h1').textContent = 'M'.repeat(32)")
+    assert tab.evaluate("document.documentElement.scrollWidth") <= SIZES["phone"]["width"]
+
+
 def test_it_is_one_small_file(site: Path) -> None:
     page = site / "index.html"
     assert 500_000 < page.stat().st_size < MOST_BYTES

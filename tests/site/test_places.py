@@ -1,14 +1,22 @@
 """Lines of the page's tables lead to places: parts, nets, bodies, boards and prints."""
 
+from functools import cache
+from pathlib import Path
+from typing import Any
+
 import pytest
 
+from lumitip_fab.site.checks import check_rows
+from lumitip_fab.site.folder import Folder
+from lumitip_fab.site.tables import prints
+from lumitip_fab.site.targets import Targets
 from site_page import SIZES, Opened
 
 pytestmark = pytest.mark.slow
 
 PLACELESS = {"bom", "derivation", "firmware", "gauge_card", "heat", "manifest", "manual_pages"}
 PLACELESS |= {"mould", "packs", "printing"}  # notes: amounts, hours, settings
-MOULD_NOTES = {"mould.clamped", "mould.masses", "mould.note", "mould.volume"}
+MOULD_NOTES = {"mould.masses", "mould.note"}
 
 
 def test_every_name_that_a_line_shows_is_in_a_panel(opened: Opened) -> None:
@@ -40,6 +48,39 @@ def test_checks_of_parts_and_boards_lead_to_a_place(opened: Opened) -> None:
         if check == "assembly.interference" and note.startswith("backing and silicone")
     )
     assert {name.partition(".")[2] for name in bodies} == {"backing", "silicone"}
+
+
+@cache
+def _rows(folder: Path) -> list[dict[str, Any]]:
+    files = Folder.of(folder)
+    return check_rows(files, Targets(files, [part.file for part in prints(files)]))
+
+
+def _show(folder: Path, check: str, subject: str) -> set[str]:
+    """All that the lines of a check of a subject show."""
+    rows = [row for row in _rows(folder) if row["check"] == check]
+    return {name for row in rows if row["subject"].startswith(subject) for name in row["show"]}
+
+
+def test_a_line_shows_the_finger_of_its_file(site: Path) -> None:
+    drawn = _show(site, "assembly.drawing", "assembly/receiver_exploded.svg place")
+    assert drawn == {"receiver.Q5", "receiver.board"}
+    size = _show(site, "assembly.drawing", "assembly/emitter_exploded.svg size")
+    assert size == {"emitter.film"}
+
+
+def test_a_cell_without_a_finger_is_an_led_and_a_photodetector(site: Path) -> None:
+    """The emitter has a Q1 too, its MOSFET."""
+    assert _show(site, "assembly.facing", "assembly/assembly.glb") == {"emitter.D1", "receiver.Q1"}
+
+
+def test_a_print_that_a_note_names_is_shown(site: Path) -> None:
+    casting = "mould/emitter_casting.md"
+    assert _show(site, "mould.volume", casting) == {"print.mould/emitter_mould.stl"}
+    assert _show(site, "mould.clamped", casting) == {"print.mould/clamp.stl"}
+    assert "print.mould/prop.stl" in _show(site, "manifest.frames", "manifest.json: mould/prop")
+    (worst,) = _show(site, "bom.prints", "bom.csv")
+    assert worst.startswith("print.")
 
 
 def test_a_net_lights_up_on_its_board(opened: Opened) -> None:

@@ -151,6 +151,28 @@ def test_each_drag_moves_the_object_as_far_as_the_pointer(opened: Opened) -> Non
     assert tab.evaluate("String(getSelection())") == ""
 
 
+def test_an_object_that_was_released_outside_stays(opened: Opened) -> None:
+    tab = opened("#cell-17", viewport={"width": 1440, "height": 900})
+    grid = tab.locator("#grid")
+    grid.scroll_into_view_if_needed()
+    box = grid.bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    before = tab.evaluate("GRASP.x")
+    # The pointer leaves before it has moved far enough to be a drag, and is released there.
+    tab.mouse.move(box["x"] + 1, y)
+    tab.mouse.down()
+    tab.mouse.move(box["x"] - 20, y)
+    tab.mouse.up()
+    tab.mouse.move(x, y, steps=5)
+    assert tab.evaluate("GRASP.x") == before
+    for button in ("right", "middle"):
+        tab.mouse.down(button=button)
+        tab.mouse.move(x + 40, y, steps=5)
+        tab.mouse.up(button=button)
+        assert tab.evaluate("GRASP.x") == before, button
+
+
 def test_a_finger_moves_the_object_and_not_the_page(opened: Opened) -> None:
     options = {"is_mobile": True, "has_touch": True, "viewport": {"width": 390, "height": 844}}
     tab = opened("", **options)

@@ -26,6 +26,7 @@ class Bed {
     const bodies = new Map(data.prints.map((part) => [part.file, bedBody(part)]));
     root.add(...bodies.values());
     this.viewer = new Viewer(this.box, rendererIn(this.box), { root, bodies }, () => true);
+    returning(this.viewer, "no-bed");
     this.spot = new THREE.Mesh(
       new THREE.SphereGeometry(1, 24, 16),
       new THREE.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.9 }),
@@ -79,9 +80,12 @@ function startBed() {
     const [file, place] = name.slice("print.".length).split("@");
     bed.choose(file, place ? place.split(",").map(Number) : null);
   });
-  new IntersectionObserver((entries) => {
-    if (entries.some((entry) => entry.isIntersecting)) onBed(() => bed.start());
-  }, { rootMargin: "200px" }).observe(byId("bed"));
+  const seen = new IntersectionObserver((entries) => {
+    if (!entries.some((entry) => entry.isIntersecting)) return;
+    seen.disconnect();
+    onBed(() => bed.start());
+  }, { rootMargin: "200px" });
+  seen.observe(byId("bed"));
 }
 
 onBed(startBed);

@@ -111,6 +111,14 @@ class _Reader:
         self.folder, self.design, self.layout = folder, folder.design, layout
         self.wires = Wires(folder)
         self.emitter, self.receiver = (folder.board(f) for f in ("emitter", "receiver"))
+        chips = {f"U{int(mux) + 1}" for mux in layout.mux}
+        output = str(self.design.packages.multiplexer.output)
+        self.outputs = {
+            terminal.net
+            for part in self.receiver.parts
+            for terminal in part.terminals
+            if part.ref in chips and terminal.number == output
+        }
         self.leds = devices(self.emitter, self.design.emitter)
         self.detectors = devices(self.receiver, self.design.receiver)
         self.firmware = firmware_arrays(folder)
@@ -124,7 +132,7 @@ class _Reader:
         led_nets = self._light(index, notes)
         signal = self._detector(index, notes)
         line, select = self._multiplexer(index, signal, notes)
-        wires, beyond = self._wires(line, select, notes)
+        wires, beyond = self._wires(line, notes)
         self._numbers(index, line, notes)
         shared = [line, *select] if line else []
         return CellRecord(
@@ -196,10 +204,9 @@ class _Reader:
                 notes.rows.append(("Pull-up", f"{part.ref}, {part.value}"))
         return line, select
 
-    def _wires(
-        self, line: str, select: Sequence[str], notes: _Notes
-    ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-        """Numbers of all wires that the cell needs, and the nets beyond its analog wire."""
+    def _wires(self, line: str, notes: _Notes) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """Numbers of all wires that the cell needs, which are all but the outputs of the other
+        multiplexers, and the nets beyond its analog wire."""
         analog = self.wires.of("receiver", line)
         beyond: tuple[str, ...] = ()
         if analog is not None:
@@ -209,9 +216,9 @@ class _Reader:
             notes.parts.update({f"beyond_{n}": part for n, part in enumerate(way.parts)})
             if way.steps:
                 notes.rows.append((analog["to_board"].capitalize(), " → ".join(way.steps)))
-        of_receiver = [analog, *(self.wires.of("receiver", net) for net in select)]
-        of_emitter = [row for row in self.wires.rows if row["from_board"] == "emitter"]
-        return tuple(row["wire"] for row in (*of_receiver, *of_emitter) if row), beyond
+        others = [("receiver", net) for net in self.outputs - {line}]
+        rows = (row for row in self.wires.rows if (row["from_board"], row["signal"]) not in others)
+        return tuple(row["wire"] for row in rows), beyond
 
     def _numbers(self, index: int, line: str, notes: _Notes) -> None:
         """Input of the controller, and indices in the firmware."""

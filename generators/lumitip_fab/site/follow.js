@@ -100,8 +100,9 @@ document.addEventListener("keydown", (event) => {
 });
 
 const last = data.cells.length - 1;
-const within = (cell) => Math.min(Math.max(Math.round(cell) || 0, 0), last);
-byId("number").addEventListener("change", (event) => choose(within(event.target.valueAsNumber)));
+const within = (cell) => Math.min(Math.max(Math.round(cell), 0), last);
+byId("number").addEventListener("change", ({ target: { valueAsNumber: typed } }) =>
+  choose(Number.isNaN(typed) ? follow.cell : within(typed)));
 byId("before").addEventListener("click", () => choose(follow.cell ? follow.cell - 1 : last));
 byId("after").addEventListener("click", () => choose(follow.cell < last ? follow.cell + 1 : 0));
 

@@ -81,9 +81,11 @@ function startGrasp() {
     return [x, -y];
   };
   svg.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
     [held, moved] = [[...place(event), GRASP.x, GRASP.y, event.clientX, event.clientY], false];
   });
   svg.addEventListener("pointermove", (event) => {
+    if (!event.buttons) held = null; // it was released outside
     if (!held || GRASP.kind === "none") return;
     const [startX, startY, shapeX, shapeY, clientX, clientY] = held;
     if (!moved && Math.hypot(event.clientX - clientX, event.clientY - clientY) < 4) return;

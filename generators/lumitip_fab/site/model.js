@@ -1,11 +1,12 @@
 // The controls of the 3D view.
-function webgl() {
+// A browser ends the oldest of many contexts, so there is one to ask with, not one for each view.
+const webgl = (() => {
   try {
     return Boolean(document.createElement("canvas").getContext("webgl2"));
   } catch {
     return false;
   }
-}
+})();
 
 function colours() {
   const style = getComputedStyle(document.documentElement);
@@ -20,10 +21,23 @@ function rendererIn(box) {
   return renderer;
 }
 
+// A browser may end the drawing of a view, and let it go on later.
+function returning(viewer, note) {
+  viewer.canvas.addEventListener("webglcontextlost", () => {
+    byId(note).textContent = "The browser has stopped this 3D view. If it does not come back, "
+      + "load the page again.";
+    byId(note).hidden = false;
+  });
+  viewer.canvas.addEventListener("webglcontextrestored", () => {
+    byId(note).hidden = true;
+    viewer.draw();
+  });
+}
+
 // Without a 3D view the rest of the page goes on, and says why there is none.
 function attempt(start, note, without) {
   try {
-    if (!webgl()) throw new Error("this browser has no WebGL 2");
+    if (!webgl) throw new Error("this browser has no WebGL 2");
     start();
   } catch (error) {
     byId(note).textContent = `There is no 3D view: ${error.message}.`;
@@ -36,6 +50,7 @@ function startModel() {
   const box = byId("canvas");
   const scene = sceneOf(byId("scene-glb").textContent);
   const model = new Viewer(box, rendererIn(box), scene, (name) => !isRest(name));
+  returning(model, "no-model");
   window.lumitip = { ...window.lumitip, model };
   const cellsOf = new Map(data.cells.flatMap((record) =>
     ["led", "detector"].map((role) => [record.parts[role], record.index])));
@@ -82,6 +97,8 @@ function startModel() {
   });
   for (const [finger, side] of [["emitter", -1], ["receiver", 1]]) {
     byId(`look-${finger}`).addEventListener("click", () => {
+      byId("cut").value = ""; // one along the faces may have taken this one away
+      cut();
       switched((kind) => kind.startsWith(`${finger}.`) && kind !== `${finger}.film`, true);
       switched((kind) => kind === `${finger}.film`, false);
       switched((kind) => !kind.startsWith(`${finger}.`), false);

@@ -8,6 +8,7 @@ board is `emitter:Q18`.
 import re
 from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
+from string import digits
 
 from lumitip_fab.site.boards import drawn_parts
 from lumitip_fab.site.folder import Folder, board_path
@@ -16,6 +17,7 @@ _REFERENCE = re.compile(r"\b[A-Z]{1,3}\d+\b")
 _NODE = re.compile(r"\b(?:emitter|receiver|flange|holder|gripper|coupling|robot)\.[A-Za-z]\w*")
 _FINGER = re.compile(r"\b(emitter|receiver)\b")
 _PLACE = re.compile(r"at \((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\) of the file's frame")
+_PRINT = re.compile(r"[\w./-]+\.(?:stl|3mf)\b")
 _WORD = re.compile(r"[^\s,;:()]+")
 _EVERYWHERE = "GND"
 """Its fills are all over each board."""
@@ -37,6 +39,12 @@ class Targets:
         """
         design = folder.design
         self.fingers = [finger.name for finger in design.fingers]
+        letters = {finger.name: finger.cells_hold.letter for finger in design.fingers}
+        self._elsewhere = {
+            finger: {letter for other, letter in letters.items() if other != finger}
+            for finger in letters
+        }
+        """Letters of the cells of the other finger."""
         auxiliary = [board.name for board in design.auxiliary_boards]
         self.printed = printed
         self.boards = [*self.fingers, *auxiliary]
@@ -111,7 +119,8 @@ class Targets:
             yield _OF_BREAKOUT if name == "breakout" else f"{name}.board"
 
     def of_measurement(self, subject: str, note: str) -> list[str]:
-        """Targets of a measurement: parts and bodies that it names, and those of its file."""
+        """Targets of a measurement: parts, bodies and prints that it names, and those of
+        its file."""
         file = re.split(r"[:\s]", subject, maxsplit=1)[0]
         rest = f"{subject[len(file) :]} {note}"
         found = _NODE.findall(f"{rest} ")
@@ -123,13 +132,22 @@ class Targets:
         words = _WORD.findall(rest)
         found += [f"{board}:{word}" for word in words if word in self._nets.get(board, ())]
         if file.startswith(_SCENES):
-            found += self._of_scene(words)
-        return self._shown([*found, *self._of_file(file)])
+            found += self._of_scene([*_FINGER.findall(file.replace("_", " ")), *words])
+        files = [file, *_PRINT.findall(rest)]
+        return self._shown([*found, *(name for each in files for name in self._of_file(each))])
 
     def _of_scene(self, words: list[str]) -> Iterator[str]:
-        """Bodies that are named by their kind; else the backings, which carry all others."""
-        fingers = [finger for finger in self.fingers if finger in words] or self.fingers
-        kinds = [f"{finger}.{word}" for finger in fingers for word in words]
+        """Bodies that are named by their kind; else the backings, which carry all others. Where no
+        finger is named, the reference of an LED or photodetector is that of a cell."""
+        named = [finger for finger in self.fingers if finger in words]
+        elsewhere = {} if named else self._elsewhere
+        fingers = named or self.fingers
+        kinds = [
+            f"{finger}.{word}"
+            for finger in fingers
+            for word in words
+            if word.rstrip(digits) not in elsewhere.get(finger, ())
+        ]
         yield from self._shown(kinds) or (f"{finger}.backing" for finger in fingers)
 
     def of_line(self, group: str, item: str, part: str) -> list[str]:

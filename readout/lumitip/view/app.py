@@ -10,7 +10,7 @@ import anyio
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
-from starlette.responses import FileResponse, JSONResponse, Response
+from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
 from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket
@@ -22,6 +22,7 @@ from lumitip.view.session import Session
 
 STATIC = Path(__file__).parent / "static"
 _MOST_BROWSERS = 32
+_FULL = f"{_MOST_BROWSERS} pages of the live view are open, the most allowed. Close one of them.\n"
 _DIGITS = 10
 
 Answer = Callable[[FingerRegistry, dict[str, Any], Request], Awaitable[dict[str, Any]]]
@@ -44,7 +45,7 @@ def make_app(registry: FingerRegistry) -> Starlette:
 
     async def stream(websocket: WebSocket) -> None:
         if len(browsers) >= _MOST_BROWSERS:
-            await websocket.close(1013)
+            await websocket.close(1013)  # the browser asks the next route why
             return
         await websocket.accept()
         browsers.add(websocket)
@@ -52,6 +53,10 @@ def make_app(registry: FingerRegistry) -> Starlette:
             await Session(websocket, registry).run()
         finally:
             browsers.discard(websocket)
+
+    async def stream_refusal(_: Request) -> Response:
+        full = len(browsers) >= _MOST_BROWSERS
+        return PlainTextResponse(_FULL, 503) if full else Response(status_code=204)
 
     async def fingers(_: Request) -> Response:
         return JSONResponse(registry.describe())
@@ -70,6 +75,7 @@ def make_app(registry: FingerRegistry) -> Starlette:
     return Starlette(
         routes=[
             WebSocketRoute("/stream", stream),
+            Route("/stream", stream_refusal),
             Route("/api/fingers", fingers),
             Route("/api/recordings", recordings),
             Route("/api/recordings/{name}", download),
@@ -176,6 +182,9 @@ async def _scene(
     if finger.tip.simulated is None:
         raise ViewError(f"{finger.url} is not simulated; only the object of a twin:// can be moved")
     finger.tip.simulated.place(body)
+    placed = finger.tip.simulated.placement()["values"]
+    if "diameter_mm" in placed:
+        finger.estimates.expect(placed["diameter_mm"])
     return {}
 
 

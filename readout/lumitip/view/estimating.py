@@ -9,7 +9,7 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from lumitip import arguments, child_process
@@ -81,7 +81,8 @@ class Estimates:
         """`"preparing"`, `"ready"` or `"failed"`."""
         self.detail = ""
         """Why there are none."""
-        self._first = {"layout": json.loads(layout.to_json()), **asdict(expected)}
+        self._layout = json.loads(layout.to_json())
+        self._expected = expected
         self._asked: tuple[Frame, int] | None = None
         self._changed: Callable[[], None] = lambda: None
         self._wake = threading.Event()
@@ -94,6 +95,11 @@ class Estimates:
         """Start the thread; `changed` is called on it after each estimate."""
         self._changed = changed
         self._thread.start()
+
+    def expect(self, diameter_mm: float) -> None:
+        """Expect cables of another diameter from the next frame on."""
+        diameter_mm = max(diameter_mm, LEAST_DIAMETER_MM)
+        self._expected = replace(self._expected, diameter_mm=diameter_mm)
 
     def ask(self, frame: Frame, number: int) -> None:
         """Estimate the pose in a frame, unless a newer one is asked for before."""
@@ -127,19 +133,27 @@ class Estimates:
                 self._changed()
 
     def _run(self, process: "subprocess.Popen[str]") -> None:
-        _asked(process, self._first)
-        self.state = "ready"
+        prepared = self._prepare(process)
         while not self._stopping.is_set():
             self._wake.wait()
             self._wake.clear()
             asked, last = self._asked, self.newest
             if asked is None or (last and last.frame is asked[0]):
                 continue
+            if self._expected != prepared:
+                prepared = self._prepare(process)
             begun = time.monotonic()
             self.newest = Estimated(*asked, _asked(process, asked[0].values.tolist()))
             self._changed()
             took_s = time.monotonic() - begun
             self._stopping.wait(max(1.0 / MOST_HZ - took_s, took_s))
+
+    def _prepare(self, process: "subprocess.Popen[str]") -> Expected:
+        """Have the process compute its tables; returns what it expects then."""
+        self.state, expected = "preparing", self._expected
+        _asked(process, {"layout": self._layout, **asdict(expected)})
+        self.state = "ready"
+        return expected
 
 
 def _end(process: "subprocess.Popen[str]") -> None:

@@ -1,5 +1,6 @@
 """`Losses`: what was lost in the last seconds, in one sentence: how much, where, and what to do."""
 
+import math
 import time
 from collections import deque
 from dataclasses import dataclass
@@ -31,6 +32,8 @@ class _Loss:
     at_s: float
     cause: str
     frames: int
+    hidden: bool
+    """Whether it was found after more than `HELD_S` in which the page drew nothing."""
 
 
 class Losses:
@@ -45,6 +48,7 @@ class Losses:
         self._before: dict[str, int] | None = None
         self._first: dict[str, int] = {}
         self._recent: deque[_Loss] = deque()
+        self._before_s = math.inf
         self._shown = {"text": _NONE, "fresh": False}
         self._shown_at_s = -RENEWED_S
 
@@ -63,8 +67,9 @@ class Losses:
         for cause, count in counts.items():
             new = count - self._before.get(cause, 0)
             if new > 0:
-                self._recent.append(_Loss(now_s, cause, new))
-        self._before = counts
+                hidden = now_s - self._before_s > HELD_S
+                self._recent.append(_Loss(now_s, cause, new, hidden))
+        self._before, self._before_s = counts, now_s
         while self._recent and now_s - self._recent[0].at_s > HELD_S:
             self._recent.popleft()
         if now_s - self._shown_at_s >= RENEWED_S:
@@ -75,12 +80,16 @@ class Losses:
 
     def _sentence(self, stats: Stats) -> dict[str, Any]:
         if self._recent:
+            seen = [loss for loss in self._recent if not loss.hidden]
             by_cause: dict[str, int] = {}
-            for loss in self._recent:
+            for loss in seen or self._recent:
                 by_cause[loss.cause] = by_cause.get(loss.cause, 0) + loss.frames
             cause = max(by_cause, key=by_cause.__getitem__)
             what, remedy = self._causes[cause]
-            text = f"{_frames(by_cause[cause])} {what} in the last {HELD_S:.0f} s. {remedy}"
+            number = _frames(by_cause[cause])
+            if not seen:
+                return {"text": f"{number} {what} while the page was hidden.", "fresh": False}
+            text = f"{number} {what} in the last {HELD_S:.0f} s. {remedy}"
             return {"text": text.strip(), "fresh": True}
         assert self._before is not None
         lost = sum(self._before.values()) - sum(self._first.values())

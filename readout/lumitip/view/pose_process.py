@@ -4,7 +4,7 @@ A process of its own, because a fit computes for milliseconds and its tables for
 process that reads, frames would wait for it. Lines of JSON on its input and output, from and to
 `lumitip.view.estimating` alone:
 
-    in    {"layout": …, "gap_mm": 3.0, "diameter_mm": 3.0}     once
+    in    {"layout": …, "gap_mm": 3.0, "diameter_mm": 3.0}     first, and when that changes
     out   {"ready": true}                                      once the tables are computed
     in    [255.0, 17.5, …]                                     values of a frame
     out   {"kind": "edge", …}                                  see `lumitip.view.pose.described`
@@ -28,16 +28,16 @@ _NICER = 10  # readers go first on a busy computer
 
 def answers(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
     """The answers to lines of input."""
-    source = iter(lines)
-    first = json.loads(next(source, "{}"))
-    if not first:
-        return
-    layout = Layout.from_json(json.dumps(first.pop("layout")))
-    estimator = PoseEstimator(layout, tracking=True, **first).prepare()
-    yield {"ready": True}
-    reach_mm, angle_deg = reach_of(layout), None
-    for line in source:
-        shown = described(estimator(json.loads(line)), reach_mm, angle_deg)
+    angle_deg = None
+    for line in lines:
+        question = json.loads(line)
+        if isinstance(question, dict):
+            layout = Layout.from_json(json.dumps(question.pop("layout")))
+            estimator = PoseEstimator(layout, tracking=True, **question).prepare()
+            reach_mm = reach_of(layout)
+            yield {"ready": True}
+            continue
+        shown = described(estimator(question), reach_mm, angle_deg)
         angle_deg = shown["angle_deg"]
         yield shown
 

@@ -1,9 +1,12 @@
 """`RerunSink`: the data of the live view for the Rerun viewer or a file.
 
-For each finger the entities `cells`, `markers`, `centre`, `border`, `mean` and `shape`, on the
-timelines `seq` and `time` (UTC). y is negated, because Rerun's y points down.
+For each finger the entities `cells`, `markers`, `centre`, `border`, `mean` and `shape`, below its
+device's name, on the timelines `seq` and `time` (UTC). Of fingers with the same name all but the
+first have a number, as in `Lumitip 2`. y is negated, because Rerun's y points down.
 """
 
+import threading
+from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
@@ -62,10 +65,12 @@ class RerunSink:
             except RuntimeError as error:
                 raise ViewError(f"--rerun {path}: cannot be written: {error}") from error
         self._last: dict[str, tuple[float, str]] = {}
+        self._names: dict[Finger, str] = {}
+        self._naming = threading.Lock()
 
     def take(self, finger: Finger, frame: Frame) -> None:
         """Send a frame, limited to `MOST_HZ` per finger."""
-        name = finger.tip.device_id
+        name = self._name(finger)
         last_t, last_shape = self._last.get(name, (-np.inf, ""))
         if 0 <= frame.t - last_t < 1 / MOST_HZ:
             return
@@ -91,6 +96,14 @@ class RerunSink:
         """Write buffered data."""
         self._stream.flush()
         self._stream.disconnect()
+
+    def _name(self, finger: Finger) -> str:
+        with self._naming:
+            if finger not in self._names:
+                device, taken = finger.tip.device_id, set(self._names.values())
+                others = (f"{device} {number}" for number in count(2))
+                self._names[finger] = next(n for n in chain([device], others) if n not in taken)
+            return self._names[finger]
 
     def _contact(self, name: str, contact: Contact, reach_mm: float) -> None:
         markers = np.empty((0, 2)) if contact.markers_mm is None else contact.markers_mm

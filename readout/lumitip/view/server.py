@@ -166,7 +166,8 @@ class Guard:
             assert self._token
             rest = f"?{urlencode(query)}" if query else ""
             moved = RedirectResponse(f"{scope['path']}{rest}", 303)
-            moved.set_cookie(self._cookie, self._token, httponly=True, samesite="strict")
+            # A strict one would not be sent where another site's link led to this address.
+            moved.set_cookie(self._cookie, self._token, httponly=True, samesite="lax")
             return moved
         return PlainTextResponse(
             "The token is missing. Open the address that `lumitip view` has printed.\n", 401

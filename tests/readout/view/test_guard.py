@@ -110,7 +110,7 @@ def test_another_address_needs_the_token(serve: Serve) -> None:
     assert (moved.status, moved.headers["Location"]) == (303, "/")
     cookie = moved.headers["Set-Cookie"]
     assert "HttpOnly" in cookie
-    assert "SameSite=strict" in cookie
+    assert "SameSite=lax" in cookie
     shown = cookie.partition(";")[0]
     assert ask(server, "GET", "/", cookie=shown).status == 200
     # Cookies are shared by all ports of a host; those of other programs lock nobody out.

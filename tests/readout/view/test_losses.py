@@ -52,6 +52,20 @@ def test_frames_that_the_page_skips_are_not_called_lost() -> None:
     assert text.startswith("40 frames were not drawn by this page in the last 10 s. Recordings")
 
 
+def test_what_a_hidden_page_missed_is_not_of_the_last_ten_seconds() -> None:
+    losses = Losses()
+    losses.status(NONE, 0, 0.0)
+    losses.status(NONE, 0, 0.5)
+    said = losses.status(lost(link=3), 1748, 20.5)
+    assert said == {
+        "text": "1\u202f748 frames were not drawn by this page while the page was hidden.",
+        "fresh": False,
+    }
+    said = losses.status(lost(link=5), 1748, 22.5)
+    assert said["text"].startswith("2 frames were lost on the way in the last 10 s. Bring")
+    assert said["fresh"] is True
+
+
 def test_it_changes_every_two_seconds_at_most_and_goes_after_ten() -> None:
     losses = Losses()
     losses.status(NONE, 0, 0.0)

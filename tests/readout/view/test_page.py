@@ -2,18 +2,16 @@
 
 import re
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from live_page import opened, pixels, places
 from lumitip import Layout
 from lumitip.links.base import LinkEvent
 from lumitip.processing import Processor
 from lumitip.view.finger import Finger
-from lumitip.view.registry import FingerRegistry
 from lumitip.view.server import ViewServer
 from page_colours import ramp
 
@@ -235,19 +233,6 @@ def test_a_device_that_falls_silent_does_not_look_alive(
     expect(page.locator(".finger [role=status]").first).to_have_text("silent")
 
 
-def test_page_finds_a_server_that_was_started_anew(browser: Browser, tmp_path: Path) -> None:
-    page = browser.new_page()
-    with ViewServer(FingerRegistry([Finger.open("twin://edge")], tmp_path), port=0) as server:
-        opened(page, server)
-        port = server.port
-    expect(page.locator("#notice")).to_have_text("no connection to lumitip view, trying again")
-    with ViewServer(FingerRegistry([Finger.open("twin://disc")], tmp_path), port=port):
-        expect(page.locator("h2").first).to_have_text("twin:disc", timeout=20_000)
-        page.wait_for_selector(".finger[data-seq]")
-        expect(page.locator(".finger")).to_have_count(1)
-        page.close()
-
-
 def test_help_lists_the_keys_and_closes(serve: Serve, page: Page) -> None:
     opened(page, serve(TWIN))
     page.keyboard.press("?")
@@ -275,9 +260,3 @@ def test_nothing_is_asked_of_another_computer(serve: Serve, page: Page) -> None:
     opened(page, server)
     assert len(asked) > 8
     assert all(url.startswith(server.url) for url in asked)
-
-
-def test_page_comes_back_with_the_token(serve: Serve, page: Page) -> None:
-    server = serve(TWIN, token="hand-made")
-    opened(page, server)
-    assert "hand-made" not in page.url

@@ -54,6 +54,23 @@ def test_recording_from_the_page_makes_a_readable_file(
     expect(page.locator(".recorded")).to_have_text(re.compile("recording twin-demo-002.mcap"))
 
 
+def test_a_second_press_stops_a_recording_at_once(
+    serve: Serve, page: Page, wait_for: WaitFor
+) -> None:
+    server = serve("twin://demo?rate=200")
+    finger = server.registry.fingers[1]
+    opened(page, server)
+    for number in (1, 2):
+        page.keyboard.press("r")
+        page.keyboard.press("r")
+        name = f"twin-demo-{number:03d}.mcap"
+        expect(page.locator("#notice")).to_have_text(f"{name} written")
+        recording = finger.status()["recording"]
+        assert (recording["file"], recording["on"]) == (name, False)
+    page.keyboard.press("r")
+    wait_for(lambda: bool(finger.status()["recording"]["on"]))
+
+
 def test_references_do_not_change_while_they_are_recorded(serve: Serve, page: Page) -> None:
     server = serve("twin://edge?rate=200")
     opened(page, server)

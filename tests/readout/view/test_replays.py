@@ -34,6 +34,8 @@ def test_a_damaged_recording_says_so(serve: Serve, page: Page, recording: Path) 
     data[len(data) // 2 : len(data) // 2 + 4096] = bytes(4096)
     recording.write_bytes(data)
     opened(page, serve(f"replay://{recording}?speed=16"))
+    expect(page.locator(".speed")).to_have_value("16")
+    expect(page.locator(".speed option").last).to_have_text("16 ×")
     expect(page.locator(".detail")).to_contain_text("damaged: bytes ")
 
 

@@ -82,6 +82,29 @@ def test_file_holds_what_the_view_shows(
     assert rows["shape"] == [["cable"]]
 
 
+@pytest.mark.slow
+def test_fingers_of_one_name_are_kept_apart(
+    tmp_path: Path, layout: Layout, still: Callable[[Layout, np.ndarray], Finger]
+) -> None:
+    from rerun.chunk import RrdReader
+
+    path = tmp_path / "run.rrd"
+    sink = RerunSink(path)
+    for code in (20, 60):
+        finger = still(layout, np.full(len(layout), code))
+        for _ in range(3):
+            sink.take(finger, finger.tip.read())
+        finger.close()
+    sink.close()
+    chunks = RrdReader(path).stream().collect().stream()
+    found = {str(chunk.entity_path) for chunk in chunks}
+    cells = {name for name in found if name.endswith("cells")}
+    assert cells == {
+        "/still/cells",
+        "/still\\ 2/cells",
+    }
+
+
 class _Panic(BaseException):
     """As Rerun's, which is no `Exception`."""
 

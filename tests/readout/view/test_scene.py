@@ -120,6 +120,22 @@ def ask(server: ViewServer, number: int, body: dict[str, Any]) -> tuple[int, str
         return answer.status, answer.read().decode()
 
 
+def test_the_estimate_expects_the_diameter_that_was_set(serve: Serve, wait_for: WaitFor) -> None:
+    server = serve("twin://cable?noise=0")
+    finger = server.registry.fingers[1]
+    wait_for(lambda: finger.count > 0)
+
+    def width_mm() -> float:
+        finger.estimates.ask(finger.newer(finger.count - 1)[0][-1][0], finger.count)
+        newest = finger.estimates.newest
+        return (newest.shown["width_mm"] or 0.0) if newest else 0.0
+
+    place = {"object": "cable", "offset_mm": 0.0, "angle_deg": 90.0}
+    for diameter_mm in (8.0, 1.0):
+        assert ask(server, 1, {**place, "diameter_mm": diameter_mm})[0] == 200
+        wait_for(lambda: abs(width_mm() - diameter_mm) < 0.5)  # noqa: B023
+
+
 @pytest.mark.slow
 def test_devices_and_replays_have_no_controls(
     serve: Serve,

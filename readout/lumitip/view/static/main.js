@@ -84,14 +84,14 @@ const stream = new Stream({
     const known = Object.keys(fingers);
     if (known.length !== panels.size || known.some((n) => !panels.has(Number(n)))) list();
   },
-  open: (whether) => {
+  open: (whether, why) => {
     document.body.dataset.stream = whether ? "open" : "closed";
     if (whether) {
       newest.frames.clear();
       newest.estimate.clear();
       say("");
       list();
-    } else say("no connection to lumitip view, trying again", true);
+    } else say(why || "no connection to lumitip view, trying again", true);
   },
 });
 

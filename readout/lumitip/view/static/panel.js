@@ -44,6 +44,8 @@ export class Panel {
     this.held = null; // what is drawn while the display is frozen
     this.refused = ""; // the last action, if it was refused
     this.failed = ""; // the last error of a recording
+    this.wanted = null; // whether to record, until a status says that it is so
+    this.asked = Promise.resolve(); // the last request to start or stop
     this.find(".tare").onclick = () => this.tare();
     this.find(".record").onclick = () => this.record();
     if (layout.replayed) this.player = new Player(this);
@@ -171,6 +173,7 @@ export class Panel {
     }
     this.late.add("writeWords");
     const on = Boolean(status.recording?.on);
+    if (this.wanted === on || status.recording?.error) this.wanted = null;
     const silent = status.silent_s > Math.max(SILENT_S, 3 / (status.rate_hz || 1));
     const detail = detailOf(status, silent);
     this.find(".detail").textContent = detail;
@@ -238,7 +241,12 @@ export class Panel {
 
   record() {
     if (this.find(".record").disabled || this.player) return null;
-    return this.ask("record", { on: !this.status?.recording?.on });
+    const on = !(this.wanted ?? this.status?.recording?.on);
+    this.wanted = on;
+    this.asked = this.asked.then(() => this.ask("record", { on })).then(() => {
+      if (this.refused === "record") this.wanted = null;
+    });
+    return this.asked;
   }
 
   clicked({ offsetX, offsetY }) {

@@ -56,7 +56,12 @@ export class Player {
     this.panel.find(".position").textContent = `${clock(position_s)} / ${clock(length_s)}`;
     this.panel.find(".play").firstChild.textContent = playing ? "Pause " : "Play ";
     this.panel.find(".play").setAttribute("aria-pressed", playing);
-    this.panel.find(".speed").value = String(speed);
+    const list = this.panel.find(".speed");
+    const options = [...list.options];
+    if (!options.some(({ value }) => Number(value) === speed)) { // such as one of the address
+      list.add(new Option(`${speed} ×`, speed), options.find(({ value }) => value > speed));
+    }
+    list.value = String(speed);
   }
 }
 

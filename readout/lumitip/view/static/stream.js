@@ -8,19 +8,24 @@ const NOT_A_NUMBER = 65535;
 const SHAPES = ["none", "edge", "corner", "cable", "covered"];
 
 export class Stream {
-  /** `receiver` is an object with `frames(message)`, `estimate(estimate)`, `status(status)` and `open(whether)`. */
+  /** `receiver` is an object with `frames(message)`, `estimate(estimate)`, `status(status)` and
+   * `open(whether, why)`. */
   constructor(receiver) {
     this.receiver = receiver;
     this.tries = 0;
     this.drawn = {};
     this.answer = false;
+    this.refusal = "";
     this.connect();
   }
 
   connect() {
     const socket = new WebSocket(`ws://${location.host}/stream`);
     socket.binaryType = "arraybuffer";
+    let opened = false;
     socket.onopen = () => {
+      opened = true;
+      this.refusal = "";
       this.tries = 0;
       this.drawn = {};
       this.answer = false;
@@ -28,11 +33,21 @@ export class Stream {
     };
     socket.onmessage = ({ data }) => this.take(data);
     socket.onclose = () => {
-      this.receiver.open(false);
+      this.receiver.open(false, this.refusal);
+      if (!opened) this.askWhy(socket);
       setTimeout(() => this.connect(), RETRY_MS[Math.min(this.tries, RETRY_MS.length - 1)]);
       this.tries += 1;
     };
     this.socket = socket;
+  }
+
+  /** A browser does not say why a stream was refused; the server does. */
+  async askWhy(socket) {
+    const answer = await fetch("stream").catch(() => null);
+    const why = answer && !answer.ok ? (await answer.text()).trim() : "";
+    if (this.socket.readyState === WebSocket.OPEN) return; // a later try went through
+    this.refusal = why;
+    if (this.socket === socket && why) this.receiver.open(false, why);
   }
 
   take(data) {
