@@ -1,5 +1,6 @@
 """Angles of LEDs in placement lists: houses count from the cathode, whichever end is marked."""
 
+import shutil
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +15,7 @@ from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Box, Component, Design, Footprint, Pad
 from lumitip_fab.design.encoding import design_text
+from lumitip_fab.errors import InputError
 
 ANODE_MARKED, ANODE_LEFT_AT_JLCPCB, USUAL = "XL-1608HIRC-850", "VSMB1940X01", "15406085BA300"
 SMALL = {
@@ -84,3 +86,17 @@ def test_leds_that_are_turned_by_their_mark_are_seen(
         (tmp_path / folder / "design.json").write_text(design_text(made), encoding="utf-8")
     assert failing(measure_board(tmp_path / "right", design, "emitter")) == set()
     assert "orders.turns" in failing(measure_board(tmp_path / "wrong", design, "emitter"))
+
+
+def test_a_part_that_no_entry_has_is_not_turned_in_silence(
+    design_dir: Path, tmp_path: Path
+) -> None:
+    folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
+    entries = folder / "parts/fabs.toml"
+    text = entries.read_text(encoding="utf-8")
+    entries.write_text(text.replace("VSMB1940X01 = 180", "VSMB1940XO1 = 180"), encoding="utf-8")
+    message = (
+        r"fabs\.toml:\d+: jlcpcb\.part_rotations is 'VSMB1940XO1', which does not exist\. Did you"
+    )
+    with pytest.raises(InputError, match=message):
+        load(folder / "fingertip.toml")

@@ -253,7 +253,27 @@ def _catalogue(folder: Path) -> tuple[dict[str, Any], list[Problem]]:
             faults += error.problems
         except ValidationError as error:
             faults += problems_of(error, field.annotation, _always(source))
-    return tables, faults
+    return tables, faults or _unknown_rotations(folder, tables)
+
+
+def _unknown_rotations(folder: Path, tables: dict[str, Any]) -> list[Problem]:
+    """Parts that a PCB fab turns by their order number, which no entry has: a slip of the pen there
+    would leave the part the wrong way round."""
+    entries = (e for table in tables.values() if isinstance(table, Mapping) for e in table.values())
+    numbers = sorted({e.order_number for e in entries if getattr(e, "order_number", "")})
+    path = parts_file(folder, "fabs")
+    source = read_toml(path, shown_path(path))
+    return [
+        Problem(
+            shown_path(path),
+            source.line(f"{name}.part_rotations"),
+            f"{name}.part_rotations",
+            unknown_name(number, numbers, "order numbers of parts/*.toml"),
+        )
+        for name, fab in tables["fabs"].items()
+        for number in fab.part_rotations
+        if number not in numbers
+    ]
 
 
 def _always(source: Source) -> Callable[[str], Source]:
