@@ -1,4 +1,4 @@
-"""Damages of copper, edge and attributes in a zip of the small receiver, each with the checks that
+"""Damages of copper, edge, words and attributes in a zip of the small receiver, each with the checks that
 must fail."""
 
 import re
@@ -9,6 +9,7 @@ from pathlib import Path
 
 from lumitip_fab.checks.readers.kicad_board import Copper, read_board
 from lumitip_fab.design.frames import on_board_page
+from order_silk_damages import reference_exchanged, word_moved, words_exchanged
 
 Files = dict[str, bytes]
 Change = Callable[[str, Path], str]
@@ -106,6 +107,9 @@ COPPER_DAMAGES: dict[str, tuple[str, Change, set[str]]] = {
         replaced("%TF.SameCoordinates,Sensor*%\n", ""),
         {"roles"},
     ),
+    "names exchanged": ("F_Silkscreen.gbr", words_exchanged, {"letters"}),
+    "name moved": ("F_Silkscreen.gbr", word_moved, {"letters"}),
+    "references exchanged": ("F_Silkscreen.gbr", reference_exchanged, {"letters"}),
     "repeated": ("F_Cu.gbr", replaced("%LPD*%", "%LPD*%\n%SRX2Y1I50J0*%"), {"readable"}),
 }
 """File, damage, and the checks that fail."""

@@ -12,6 +12,7 @@ from lumitip_fab.checks.board_read import ReadBoard, lands
 from lumitip_fab.checks.order_nets import measure_nets
 from lumitip_fab.checks.order_roles import measure_roles
 from lumitip_fab.checks.readers.gerber import drilled, gerber_area
+from lumitip_fab.checks.readers.kicad_font import inked
 from lumitip_fab.checks.readers.kicad_silk import Word
 from lumitip_fab.checks.result import Measurement, Subject
 from lumitip_fab.design import Box
@@ -103,11 +104,28 @@ def _silk(
     more = shapely.difference(printed, shapely.union_all([lines, *rooms]).buffer(PLACE_MM)).area
     note = "differs from the board's lines and words"
     yield of.figure("silk", lost + more, 0, _ROUND_MM2, "mm²", note)
-    inked = [_inside(printed, room) / room.area for room in rooms]
-    least, note = min(inked, default=math.nan), "the least that has ink"
+    shares = [_inside(printed, room) / room.area for room in rooms]
+    least, note = min(shares, default=math.nan), "the least that has ink"
     yield of.figure("words", least, INK_SHARE, 1.0, "of a word's room", note)
+    misread = list(_misread(read, front, printed, lines))
+    yield of.count("letters", misread, "words whose ink is not that of their letters")
     off = shapely.intersection(printed, bare).area
     yield of.figure("silk_clear", off, 0, PLACE_MM, "mm²", "printed on pads or off the board")
+
+
+def _misread(
+    read: ReadBoard, front: bool, printed: BaseGeometry, lines: BaseGeometry
+) -> Iterator[str]:
+    """Words that lack a stroke of KiCad's font, or have one more in their room."""
+    words = [word for word in read.board.silk.words if word.front == front]
+    letters = [_in_sensor(read, inked(word)) for word in words]
+    drawn = shapely.union_all([lines, *letters])
+    off = shapely.get_parts(printed.symmetric_difference(drawn).buffer(-_CHORD_MM))
+    tree = shapely.STRtree(off)
+    for word in words:
+        if tree.query(_in_sensor(read, _room(word)), predicate="intersects").size:
+            x, y = _in_sensor(read, shapely.Point(word.at)).coords[0]
+            yield f"{word.text} at ({x:.1f}, {y:.1f})"
 
 
 def _inside(printed: BaseGeometry, room: BaseGeometry) -> float:
