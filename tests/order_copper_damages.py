@@ -1,5 +1,5 @@
-"""Damages of copper, edge, words and attributes in a zip of the small receiver, each with the checks that
-must fail."""
+"""Damages of copper, edge, words and attributes in a zip of the small receiver, each with the
+checks that must fail."""
 
 import re
 from collections.abc import Callable

@@ -63,7 +63,7 @@ EDITS: list[tuple[str, Edit, set[str]]] = [
     (DIAGRAM, swapped('id="breakout.J5.3"', 'id="breakout.J5.4"'), {"diagram"}),
     # A wire dropped.
     (LIST, without(r"^W2\.7,.*?\n"), {"ends", "pins", "note", "diagram"}),
-    (LIST, without(r"^W3\.2,.*?\n"), {"ends", "note", "diagram"}),
+    (LIST, without(r"^W3\.2,.*?\n"), {"contacts", "ends", "note", "diagram"}),
     (NOTE, without(r"^\| W1\.2 .*?\n"), {"note"}),
     (DIAGRAM, without(r'^<g class="wire" id="W2\.9".*?</g>\n'), {"diagram"}),
     # What is told of a wire.
@@ -72,16 +72,26 @@ EDITS: list[tuple[str, Edit, set[str]]] = [
     (LIST, replaced("J6.1,BK", "J6.1,RD"), {"colours", "note", "diagram"}),
     (LIST, replaced("J6.2,RD", "J6.2,BU"), {"colours", "note", "diagram"}),
     (LIST, replaced("J5.5,GN", "J5.5,YE"), {"colours", "note", "diagram"}),
-    (LIST, replaced("J5.5,GN", "J5.5,XX"), {"colours", "note", "diagram"}),
+    (LIST, replaced("J5.5,GN", "J5.5,XX"), {"colours", "marks", "note", "diagram"}),
     (LIST, replaced("BK,0.08,250", "BK,0.08,150"), {"lengths", "note"}),
     (LIST, replaced("BK,0.08,250", "BK,0.08,300"), {"lengths", "note"}),
     (LIST, replaced("RD,0.08,250", "RD,0.02,250"), {"density", "note"}),
-    (LIST, replaced("RD,0.08,250,69.84", "RD,0.08,250,34.10"), {"current", "note"}),
+    (LIST, replaced("RD,0.08,250,83.00", "RD,0.08,250,34.10"), {"current", "note"}),
     (LIST, replaced("RD,0.08,340,", "RD,0.0005,340,"), {"density", "drop", "note"}),
+    (LIST, replaced("RD,0.08,340,", "RD,0,340,"), {"readable"}),
     (LIST, replaced("colour,", "color,"), {"readable"}),
-    (NOTE, replaced("| 69.84 |", "| 96.23 |"), {"note"}),
+    (NOTE, replaced("| 83.00 |", "| 96.23 |"), {"note"}),
     (NOTE, replaced("breakout, 250 mm", "breakout, 520 mm"), {"note"}),
     (NOTE, replaced("| RD red", "| BU blue"), {"note"}),
+    (NOTE, replaced("| BK black", "| BK red"), {"note"}),
+    (NOTE, swapped("to contact 9", "to contact 5"), {"contacts"}),
+    (NOTE, replaced("header J3:", "header J2:"), {"contacts"}),
+    (NOTE, replaced("W3.1 goes to contact 9, ", ""), {"contacts"}),
+    (NOTE, replaced("W3.1 goes to contact 9", "W3.1 goes to 9"), {"contacts", "named"}),
+    (NOTE, replaced("white, marked pink", "black, marked red"), {"marks"}),
+    (NOTE, replaced("W3.3 white", "W3.2 white"), {"marks"}),
+    (NOTE, replaced("in the set of 10", "in the set of 12"), {"marks"}),
+    (NOTE, replaced("\n- Measure", "\n- Cut W2.9 off.\n- Measure"), {"named"}),
     (DIAGRAM, replaced(">W1.2 RD", ">W1.2 BK"), {"diagram"}),
     (DIAGRAM, replaced('stroke="#d11f2e"', 'stroke="#1a1a1a"'), {"diagram"}),
     (DIAGRAM, replaced("</svg>", ""), {"diagram"}),
@@ -111,6 +121,17 @@ def test_a_net_or_a_pin_on_another_lead_is_seen(copied: Path) -> None:
     assert failing(copied) == {"pins"}
     header.write_text(replaced("PINS 6, 7", "PINS 7, 6")(told), encoding="utf-8")
     assert failing(copied) == {"pins"}
+
+
+def test_a_multiplexer_without_a_pad_is_seen(copied: Path) -> None:
+    board = copied / "boards/receiver/receiver.kicad_pcb"
+    text = board.read_text(encoding="utf-8")
+    start = text.index('"U1"')
+    pad = re.compile(r'\(pad "?16"? .*?(?=\(pad |\(model )', re.DOTALL)
+    less = pad.sub("", text[start:], count=1)
+    assert less != text[start:]
+    board.write_text(text[:start] + less, encoding="utf-8")
+    assert "pins" in failing(copied)
 
 
 def test_lost_files_are_told(copied: Path) -> None:

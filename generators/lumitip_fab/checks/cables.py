@@ -1,5 +1,6 @@
 """`cables.csv`, `cables.md` and `wiring.svg` as rows of wires."""
 
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -7,12 +8,13 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from lumitip_fab.checks.readers.tables import table
+from lumitip_fab.design.cabling import COLOURS, codes_of
 from lumitip_fab.errors import OutputError
 
 _SVG = "{http://www.w3.org/2000/svg}"
 _NEAR_MM = 0.01
 _ROW = re.compile(
-    r"^\| (W\S+) \| ([A-Z]+) [a-z ]+ \| (\S+) \| (\S+) \| (\S+) \| ([\d.]+|–) \|$", re.MULTILINE
+    r"^\| (W\S+) \| ([A-Z]+ [a-z ]+) \| (\S+) \| (\S+) \| (\S+) \| ([\d.]+|–) \|$", re.MULTILINE
 )
 _HEADING = re.compile(r"^## (W\d+): (\w+) to (\w+), ([\d.]+) mm of ([\d.]+) mm²$", re.MULTILINE)
 
@@ -51,7 +53,7 @@ def read_list(path: Path) -> tuple[Row, ...]:
                 (each["from_board"], each["from_pad"]),
                 (each["to_board"], each["to_pad"]),
                 each["colour"],
-                float(each["section_mm2"]),
+                _section_mm2(each["section_mm2"]),
                 float(each["length_mm"]),
                 float(each["current_ma"]),
             )
@@ -61,12 +63,20 @@ def read_list(path: Path) -> tuple[Row, ...]:
         raise OutputError(f"{path}: cannot be read as a list of cables: {error!r:.120}") from error
 
 
-def read_note(path: Path) -> dict[str, tuple[str, ...]]:
-    """Each wire in `cables.md`: signal, both boards with their pads, colour, length, current."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise OutputError(f"{path}: {error}") from error
+def _section_mm2(text: str) -> float:
+    """Of a wire's copper.
+
+    Raises:
+        ValueError: if it is no figure above zero.
+    """
+    if not 0 < (mm2 := float(text)) < math.inf:
+        raise ValueError(f"section_mm2 is {text!r}; it must be above 0")
+    return mm2
+
+
+def read_note(text: str) -> dict[str, tuple[str, ...]]:
+    """Each wire in `cables.md`: signal, both boards with their pads, colour with its name, length,
+    current."""
     heads = {name: rows for name, *rows in _HEADING.findall(text)}
     rows: dict[str, tuple[str, ...]] = {}
     for wire, colour, start, signal, end, current in _ROW.findall(text):
@@ -75,14 +85,27 @@ def read_note(path: Path) -> dict[str, tuple[str, ...]]:
     return rows
 
 
+def text_of(path: Path) -> str:
+    """The note.
+
+    Raises:
+        OutputError: if it cannot be read.
+    """
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise OutputError(f"{path}: {error}") from error
+
+
 def note_row(row: Row) -> tuple[str, ...]:
     """The expected row of a wire in the note."""
     current = f"{row.current_ma:.2f}" if row.current_ma else "–"
+    names = [COLOURS.get(code, ("no colour",))[0] for code in codes_of(row.colour)]
     return (
         row.signal,
         *row.start,
         *row.end,
-        row.colour,
+        f"{row.colour} {' with '.join(names)}",
         f"{row.length_mm:g}",
         f"{row.section_mm2:g}",
         current,

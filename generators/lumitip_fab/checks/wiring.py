@@ -8,7 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
-from lumitip_fab.checks.cables import Row, note_row, read_diagram, read_list, read_note
+from lumitip_fab.checks.cable_prose import measure_prose
+from lumitip_fab.checks.cables import (
+    Row,
+    note_row,
+    read_diagram,
+    read_list,
+    read_note,
+    text_of,
+)
 from lumitip_fab.checks.connections import PINOUTS
 from lumitip_fab.checks.readers.kicad_board import KicadBoard, read_board
 from lumitip_fab.checks.result import Measurement, count, unreadable
@@ -54,7 +62,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield count("wiring.colours", _LIST, _wrong_colours(rows, design), "wires")
     yield _lengths(rows, boards, design)
     yield from _currents(rows, design)
-    yield _note(outputs, rows)
+    yield from _note(outputs, rows, design)
     yield _diagram(outputs, rows)
 
 
@@ -96,8 +104,11 @@ def _wrong_pins(
     muxes = [p for p in receiver.parts if re.fullmatch(r"U\d+", p.ref)]
     wrong = [] if len(muxes) == len(analog) else [f"{len(analog)} analog pins"]
     for mux in sorted(muxes, key=lambda part: int(part.ref[1:])):
-        pinout = next(p for p in PINOUTS if p.leads == len(mux.terminals))
+        pinout = next((p for p in PINOUTS if p.leads == len(mux.terminals)), None)
         net = {t.number: t.net for t in mux.terminals}
+        if pinout is None or not {pinout.output, *pinout.select} <= net.keys():
+            wrong.append(f"{mux.ref} has {len(mux.terminals)} leads, as no multiplexer has")
+            continue
         wanted = {net[pinout.output]: analog[int(mux.ref[1:]) - 1 :][:1]}
         wanted |= {net[lead]: [pin] for lead, pin in zip(pinout.select, select, strict=False)}
         wrong += [
@@ -208,14 +219,17 @@ def _currents(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
     yield Measurement("wiring.drop", _LIST, drop, 0, most, "V", "supply to emitter and back")
 
 
-def _note(outputs: Path, rows: tuple[Row, ...]) -> Measurement:
+def _note(outputs: Path, rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
     try:
-        noted = read_note(outputs / _NOTE)
+        text = text_of(outputs / _NOTE)
     except OutputError as error:
-        return unreadable("wiring.note", _NOTE, str(error))
+        yield unreadable("wiring.note", _NOTE, str(error))
+        return
+    noted = read_note(text)
     wanted = {row.wire: note_row(row) for row in rows}
     wrong = [w for w in sorted({*wanted, *noted}) if wanted.get(w) != noted.get(w)]
-    return count("wiring.note", _NOTE, wrong, "wires")
+    yield count("wiring.note", _NOTE, wrong, "wires")
+    yield from measure_prose(text, rows, design)
 
 
 def _diagram(outputs: Path, rows: tuple[Row, ...]) -> Measurement:
