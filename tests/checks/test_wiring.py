@@ -60,12 +60,12 @@ EDITS: list[tuple[str, Edit, set[str]]] = [
     # Two wires swapped at one end, in each file.
     (LIST, swapped("breakout,J5.3,", "breakout,J5.4,"), {"ends", "pins", "note", "diagram"}),
     (NOTE, swapped("| J5.3 |", "| J5.4 |"), {"note"}),
-    (DIAGRAM, swapped('id="breakout.J5.3"', 'id="breakout.J5.4"'), {"diagram"}),
+    (DIAGRAM, swapped('id="breakout.J5.3"', 'id="breakout.J5.4"'), {"diagram", "texts"}),
     # A wire dropped.
     (LIST, without(r"^W2\.7,.*?\n"), {"ends", "pins", "note", "diagram"}),
     (LIST, without(r"^W3\.2,.*?\n"), {"contacts", "ends", "note", "diagram"}),
     (NOTE, without(r"^\| W1\.2 .*?\n"), {"note"}),
-    (DIAGRAM, without(r'^<g class="wire" id="W2\.9".*?</g>\n'), {"diagram"}),
+    (DIAGRAM, without(r'^<g class="wire" id="W2\.9".*?</g>\n'), {"diagram", "texts"}),
     # What is told of a wire.
     (LIST, replaced("W2.2,", "W2.1,"), {"ends", "note", "diagram"}),
     (LIST, replaced("S0,receiver,J1.3", "S0,receiver,J1.4"), {"ends", "note", "diagram"}),
@@ -73,11 +73,11 @@ EDITS: list[tuple[str, Edit, set[str]]] = [
     (LIST, replaced("J6.2,RD", "J6.2,BU"), {"colours", "note", "diagram"}),
     (LIST, replaced("J5.5,GN", "J5.5,YE"), {"colours", "note", "diagram"}),
     (LIST, replaced("J5.5,GN", "J5.5,XX"), {"colours", "marks", "note", "diagram"}),
-    (LIST, replaced("BK,0.08,250", "BK,0.08,150"), {"lengths", "note"}),
-    (LIST, replaced("BK,0.08,250", "BK,0.08,300"), {"lengths", "note"}),
-    (LIST, replaced("RD,0.08,250", "RD,0.02,250"), {"density", "note"}),
-    (LIST, replaced("RD,0.08,250,83.00", "RD,0.08,250,34.10"), {"current", "note"}),
-    (LIST, replaced("RD,0.08,340,", "RD,0.0005,340,"), {"density", "drop", "note"}),
+    (LIST, replaced("BK,0.08,250", "BK,0.08,150"), {"lengths", "note", "texts"}),
+    (LIST, replaced("BK,0.08,250", "BK,0.08,300"), {"lengths", "note", "texts"}),
+    (LIST, replaced("RD,0.08,250", "RD,0.02,250"), {"density", "note", "texts"}),
+    (LIST, replaced("RD,0.08,250,83.00", "RD,0.08,250,34.10"), {"current", "note", "texts"}),
+    (LIST, replaced("RD,0.08,340,", "RD,0.0005,340,"), {"density", "drop", "note", "texts"}),
     (LIST, replaced("RD,0.08,340,", "RD,0,340,"), {"readable"}),
     (LIST, replaced("colour,", "color,"), {"readable"}),
     (NOTE, replaced("| 83.00 |", "| 96.23 |"), {"note"}),
@@ -95,6 +95,12 @@ EDITS: list[tuple[str, Edit, set[str]]] = [
     (DIAGRAM, replaced(">W1.2 RD", ">W1.2 BK"), {"diagram"}),
     (DIAGRAM, replaced('stroke="#d11f2e"', 'stroke="#1a1a1a"'), {"diagram"}),
     (DIAGRAM, replaced("</svg>", ""), {"diagram"}),
+    (DIAGRAM, swapped(">GND</text></g>\n", ">24V</text></g>\n"), {"texts"}),
+    (DIAGRAM, swapped(">Emitter</text>", ">Receiver</text>"), {"texts"}),
+    (DIAGRAM, swapped(">J5</text>", ">J6</text>"), {"texts"}),
+    (DIAGRAM, swapped(">W1</text>", ">W3</text>"), {"texts"}),
+    (DIAGRAM, replaced(">250 mm, ", ">150 mm, "), {"texts"}),
+    (DIAGRAM, replaced("83 mA", "38 mA"), {"texts"}),
 ]
 
 

@@ -18,6 +18,7 @@ from lumitip_fab.checks.readers.manual import (
     read_sheets,
 )
 from lumitip_fab.checks.result import Measurement, Subject, unreadable
+from lumitip_fab.checks.work_words import measure_words
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline.manifest import sha256_of
@@ -36,7 +37,7 @@ _FEW = 8  # letters beside numbers that are alike by chance
 _AHEAD = 4000  # letters in which a passage is looked for after one that differs
 
 
-def measure(outputs: Path, _design: Design) -> Iterator[Measurement]:
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Read both forms, and the files of the pictures."""
     html = Subject("manual_pages", _HTML)
     try:
@@ -52,6 +53,7 @@ def measure(outputs: Path, _design: Design) -> Iterator[Measurement]:
     yield html.count("notes", list(_at_odds(outputs, page)), "passages at odds with a note")
     yield html.count("lines", list(lines_misplaced(outputs, page)), "lines of a note misplaced")
     yield html.count("labels", list(labels_alone(outputs, page)), "labels of a note alone")
+    yield from measure_words(outputs, design)
     pdf = Subject("manual_pages", _PDF)
     try:
         sheets = read_sheets(outputs / _PDF)

@@ -18,6 +18,7 @@ from lumitip_fab.checks.cables import (
     text_of,
 )
 from lumitip_fab.checks.connections import PINOUTS
+from lumitip_fab.checks.diagram_texts import misread
 from lumitip_fab.checks.readers.kicad_board import KicadBoard, read_board
 from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design
@@ -63,7 +64,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield _lengths(rows, boards, design)
     yield from _currents(rows, design)
     yield from _note(outputs, rows, design)
-    yield _diagram(outputs, rows)
+    yield from _diagram(outputs, rows, design)
 
 
 def _nets(board: KicadBoard) -> dict[str, str]:
@@ -232,12 +233,13 @@ def _note(outputs: Path, rows: tuple[Row, ...], design: Design) -> Iterator[Meas
     yield from measure_prose(text, rows, design)
 
 
-def _diagram(outputs: Path, rows: tuple[Row, ...]) -> Measurement:
+def _diagram(outputs: Path, rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
     """Each line ends on the pads of the list, in the ink of its colour, with its own label."""
     try:
         drawn = read_diagram(outputs / _DIAGRAM)
     except OutputError as error:
-        return unreadable("wiring.diagram", _DIAGRAM, str(error))
+        yield unreadable("wiring.diagram", _DIAGRAM, str(error))
+        return
     wrong = sorted({*drawn} ^ {row.wire for row in rows})
     for row in rows:
         wire = drawn.get(row.wire)
@@ -247,4 +249,10 @@ def _diagram(outputs: Path, rows: tuple[Row, ...]) -> Measurement:
         inks = tuple(COLOURS.get(code, ("", ""))[1] for code in codes_of(row.colour))
         if ends != (".".join(row.start), ".".join(row.end), inks, [row.wire, row.colour]):
             wrong.append(f"{row.wire} from {wire.start} to {wire.end}")
-    return count("wiring.diagram", _DIAGRAM, wrong, "wires")
+    yield count("wiring.diagram", _DIAGRAM, wrong, "wires")
+    try:
+        texts = list(misread(outputs / _DIAGRAM, rows, design.cabling))
+    except (ValueError, LookupError) as error:
+        yield unreadable("wiring.texts", _DIAGRAM, f"cannot be measured: {error!r:.120}")
+        return
+    yield count("wiring.texts", _DIAGRAM, texts, "words that stand elsewhere")
