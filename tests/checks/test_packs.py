@@ -27,12 +27,12 @@ def rows(folder: Path, name: str) -> Rows:
 
 
 EDITS = [
-    ("M2 nut,,ISO 4032,4,piece", "M2 nut,,ISO 4032,3,piece", {"needed"}),
+    ("M2 nut,,ISO 4032,4,piece", "M2 nut,,ISO 4032,3,piece", {"amounts", "needed"}),
     ('5 m each",assumed,1,15,15.00', '5 m each",assumed,2,15,30.00', {"enough", "total"}),
     ("spool of 1 kg,assumed,1,25,25.00", "spool of 1 kg,assumed,1,25,20.00", {"enough", "total"}),
     ("5 boards,inferred,1,12.1,12.10", "4 boards,inferred,1,12.1,12.10", {"enough", "units"}),
-    ("wooden stick,,", "resistor 1K1,,", {"lines"}),
-    ("DOWSIL PR-1200,Dow,", "DOWSIL PR-1200,Dow Inc,", {"lines"}),
+    ("wooden stick,,", "resistor 1K1,,", {"amounts", "lines"}),
+    ("DOWSIL PR-1200,Dow,", "DOWSIL PR-1200,Dow Inc,", {"amounts", "lines"}),
     ("pack_price,price", "price", {"readable"}),
     ("needed,unit,", "needed,each,", {"readable"}),
     (",sheet,ream", ",piece,ream", {"units"}),
@@ -50,6 +50,38 @@ def test_nothing_fails_as_it_is_written(copied: Path) -> None:
 def test_a_damage_fails_its_check(copied: Path, old: str, new: str, expected: set[str]) -> None:
     edit(copied / "order.csv", old, new)
     assert failing_of(copied, "packs") == expected
+
+
+def rewritten(folder: Path, changed: Rows) -> None:
+    with (folder / "order.csv").open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, changed[0].keys(), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(changed)
+
+
+def of_parts(folder: Path) -> tuple[Rows, dict[str, str], dict[str, str]]:
+    """All rows, and two resistors of one price that are bought singly."""
+    every = rows(folder, "order.csv")
+    singly = [r for r in every if r["item"].startswith("resistor ") and not r["pack"]]
+    one = next(r for r in singly if r["needed"] != "1")
+    other = next(r for r in singly if r is not one and r["pack_price"] == one["pack_price"])
+    return every, one, other
+
+
+def test_an_amount_shifted_from_line_to_line_is_seen(copied: Path) -> None:
+    every, one, other = of_parts(copied)
+    for row, by in ((one, -1), (other, 1)):
+        row["needed"] = row["packs"] = str(int(row["needed"]) + by)
+        row["price"] = f"{float(row['pack_price']) * int(row['packs']):.2f}"
+    rewritten(copied, every)
+    assert failing_of(copied, "packs") == {"amounts"}
+
+
+def test_products_exchanged_are_seen(copied: Path) -> None:
+    every, one, other = of_parts(copied)
+    one["part"], other["part"] = other["part"], one["part"]
+    rewritten(copied, every)
+    assert failing_of(copied, "packs") == {"amounts"}
 
 
 def test_both_totals_say_what_they_are(copied: Path) -> None:

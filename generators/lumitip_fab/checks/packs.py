@@ -1,6 +1,7 @@
 """`order.csv` against the bill: whole packs of everything that it lists, and the sum."""
 
 import math
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +13,7 @@ from lumitip_fab.design import Design, Purchase
 READS = ("bom.csv", "order.csv")
 _FILE = "order.csv"
 _CENT = 0.0051
+_ROUNDED = 1e-5  # of an amount: six digits are written
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         return
     note = "of all quantities of the bill"
     yield Measurement("packs.needed", _FILE, needed, used - 0.1, used + 0.1, "units", note)
+    amounts = list(_astray(orders, bill, design.purchase))
+    yield count("packs.amounts", _FILE, amounts, "lines of other amounts than the bill's")
     yield count(
         "packs.lines",
         _FILE,
@@ -75,6 +79,29 @@ def _strange(orders: list[Row], bill: list[dict[str, str]], purchase: Purchase) 
         others = {shared.get(row["part"], ""), titles.get(row["part"], "")}
         if names.isdisjoint({row["item"], product, *others} - {" "}):
             yield row["item"]
+
+
+def _astray(orders: list[Row], bill: list[dict[str, str]], purchase: Purchase) -> Iterator[str]:
+    """Lines that need another amount of a product than the lines of the bill that it is for."""
+    wanted: defaultdict[tuple[str, str], float] = defaultdict(float)
+    for line in bill:
+        wanted[_ordered(line, purchase)] += float(line["quantity"])
+    found: defaultdict[tuple[str, str], float] = defaultdict(float)
+    for order in orders:
+        found[order.item, order.product] += order.needed
+    for item, product in sorted({*wanted, *found}):
+        needed, used = found[item, product], wanted[item, product]
+        if not abs(needed - used) <= max(_ROUNDED * used, _CENT):
+            yield f"{item} of {product.strip() or 'any maker'}: {needed:g}, not {used:g}"
+
+
+def _ordered(line: dict[str, str], purchase: Purchase) -> tuple[str, str]:
+    """Item and product by which a line of the bill is ordered: filament by its spool, everything
+    else as the bill has it."""
+    spool = purchase.pack(line["part"]) if line["group"] == "prints" else None
+    if spool:
+        return spool.title, f"{spool.manufacturer} {spool.product}"
+    return line["item"], f"{line['manufacturer']} {line['part']}"
 
 
 def _row(row: dict[str, str]) -> Row:
