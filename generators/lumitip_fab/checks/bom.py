@@ -5,13 +5,13 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from lumitip_fab.checks.board_read import names_of
 from lumitip_fab.checks.bom_numbers import measure_numbers
+from lumitip_fab.checks.bom_uses import Part, Row, measure_uses
 from lumitip_fab.checks.cables import read_list
 from lumitip_fab.checks.readers.kicad_board import read_board
 from lumitip_fab.checks.readers.tables import table
@@ -38,24 +38,13 @@ READS = (
 )
 _FILE = "bom.csv"
 _PART_G = re.compile(r"^\| .*, part [AB] \| \*\*([\d.]+) g\*\* \|$", re.MULTILINE)
+_GROUPS = frozenset(
+    ("electronics", "boards", "prints", "casting", "mask", "wiring", "supplies", "fasteners")
+)
 _CENT = 0.0051
 _FRACTION = 0.01
 _LENGTH = re.compile(r"M[\d.]+ x ([\d.]+) socket head screw$")
 _THREADS = (1.5, 2.5)  # of a bolt in the gripper, its length an even one
-
-
-@dataclass(frozen=True)
-class Row:
-    """A line of the bill."""
-
-    group: str
-    item: str
-    maker: str
-    part: str
-    quantity: float
-    unit: str
-    each: float | None
-    price: float | None
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -64,15 +53,16 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         rows, total, note = _read(outputs / _FILE)
         parts = _parts(outputs, design)
         grams = _grams(outputs, design)
-        metres = sum(row.length_mm for row in read_list(outputs / "wiring/cables.csv")) / 1000
-        cast = sum(map(float, _casting(outputs, design)))
+        wires = read_list(outputs / "wiring/cables.csv")
+        metres = sum(row.length_mm for row in wires) / 1000
+        cast = sum(_casting(outputs, design))
+        uses = list(measure_uses(outputs, rows, parts, wires, design))
     except OutputError as error:
         yield unreadable("bom.readable", _FILE, str(error))
         return
-    yield count("bom.parts", _FILE, _wrong_parts(rows, parts, design), "wrong parts")
-    boards = {f"{name} board" for name in names_of(design)} | {"placing and soldering"}
-    wrong = sorted({row.item for row in rows if row.group == "boards"} ^ boards)
-    yield count("bom.boards", _FILE, wrong, "wrong boards")
+    every = sum(parts.values(), start=Counter[Part]())
+    yield count("bom.parts", _FILE, _wrong_parts(rows, every, design), "wrong parts")
+    yield from uses
     yield _prints(rows, grams)
     cast += sum(design.mould.trial_g)
     yield _near("silicone", rows, "casting", cast, "g", "both casting notes, and the trial")
@@ -114,6 +104,7 @@ def _read(path: Path) -> tuple[tuple[Row, ...], float, str]:
                 r["item"],
                 r["manufacturer"],
                 r["part"],
+                r["for"],
                 _figure(r["quantity"]),
                 r["unit"],
                 _price(r["unit_price"]),
@@ -123,6 +114,8 @@ def _read(path: Path) -> tuple[tuple[Row, ...], float, str]:
         )
         if lines[-1]["group"] != "total":
             raise ValueError("its last line is no total")
+        if unknown := {row.group for row in rows} - _GROUPS:
+            raise ValueError(f"unknown groups: {', '.join(sorted(unknown))}")
         return rows, _figure(lines[-1]["price"]), lines[-1]["for"]
     except (OSError, ValueError, KeyError, IndexError) as error:
         raise OutputError(f"{path}: cannot be read as a bill: {error!r:.120}") from error
@@ -138,19 +131,18 @@ def _price(text: str) -> float | None:
     return _figure(text) if text else None
 
 
-Part = tuple[str, str]
-"""Manufacturer, and order number."""
-
-
-def _parts(outputs: Path, design: Design) -> Counter[Part]:
-    """Quantity of each part on the boards' files, those that are soldered on by hand too.
+def _parts(outputs: Path, design: Design) -> dict[str, Counter[Part]]:
+    """Quantity of each part in each board's file, those that are soldered on by hand too.
 
     Raises:
         OutputError: if one cannot be read.
     """
-    boards = [read_board(outputs / f"boards/{n}/{n}.kicad_pcb") for n in names_of(design)]
-    fields = [dict(part.fields) for board in boards for part in board.parts if part.bought]
-    return Counter((f.get("Manufacturer", ""), f.get("MPN", "")) for f in fields)
+    found: dict[str, Counter[Part]] = {}
+    for name in names_of(design):
+        board = read_board(outputs / f"boards/{name}/{name}.kicad_pcb")
+        fields = [dict(part.fields) for part in board.parts if part.bought]
+        found[name] = Counter((f.get("Manufacturer", ""), f.get("MPN", "")) for f in fields)
+    return found
 
 
 def _grams(outputs: Path, design: Design) -> dict[str, float]:
@@ -168,12 +160,12 @@ def _grams(outputs: Path, design: Design) -> dict[str, float]:
     return found
 
 
-def _casting(outputs: Path, design: Design) -> Iterator[str]:
+def _casting(outputs: Path, design: Design) -> Iterator[float]:
     for finger in design.fingers:
         path = outputs / f"mould/{finger.name}_casting.md"
         try:
-            yield from _PART_G.findall(path.read_text(encoding="utf-8"))
-        except (OSError, UnicodeDecodeError) as error:
+            yield from map(float, _PART_G.findall(path.read_text(encoding="utf-8")))
+        except (OSError, ValueError) as error:
             raise OutputError(f"{path}: {error}") from error
 
 
