@@ -179,6 +179,30 @@ def hours_edited(folder: Path) -> None:
     edit(folder / NOTE, "Leave it for 24 h", "Leave it for 2 h")
 
 
+def ratio_edited(folder: Path) -> None:
+    edit(folder / NOTE, "1 g of part A with 1 g of part B", "1 g of part A with 10 g of part B")
+
+
+def glue_edited(folder: Path) -> None:
+    edit(folder / NOTE, "Let it harden for 24 h", "Let it harden for 2 h")
+
+
+def pot_life_edited(folder: Path) -> None:
+    edit(folder / NOTE, "for some 240 min", "for some 2400 min")
+
+
+def primer_edited(folder: Path) -> None:
+    edit(folder / NOTE, "Let it dry for 90 min", "Let it dry for 9 min")
+
+
+def trial_edited(folder: Path) -> None:
+    edit(folder / NOTE, "Wait 24 h at 23 °C", "Wait 24 h at 123 °C")
+
+
+def turned_over(folder: Path) -> None:
+    edit(folder / NOTE, "open side up", "open side down")
+
+
 def note_empty(folder: Path) -> None:
     (folder / NOTE).write_text("", encoding="utf-8")
 
@@ -201,6 +225,12 @@ FILES = {
     mass_edited: {"masses"},
     layers_edited: {"note"},
     hours_edited: {"note"},
+    ratio_edited: {"note"},
+    glue_edited: {"note"},
+    pot_life_edited: {"note"},
+    primer_edited: {"note"},
+    trial_edited: {"note"},
+    turned_over: {"note"},
     clamp_forgotten: {"clamped"},
     screw_edited: {"clamped"},
     note_empty: {"volume", "masses", "note", "clamped"},

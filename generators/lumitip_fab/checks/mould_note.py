@@ -10,18 +10,14 @@ import numpy as np
 import shapely
 
 from lumitip_fab.checks.readers import solids
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design, Finger, Prop
 
 VOLUME_FRACTION = 0.02
 _GRID_MM = 0.05
 _PART = re.compile(r", part ([AB]) \| \*\*([0-9.]+) g\*\*")
-_HOW = (
-    r"layers of (\S+) mm",
-    r"floor at (\S+) mm",
-    r"stops\s+at (\S+) mm",
-    r"Leave it for (\S+) h",
-)
+Figures = list[tuple[str, ...]]
+"""Of each place where the note has them."""
 _STATED = re.compile(r"stays on the finger \| \*\*([0-9.]+) mL\*\*")
 
 
@@ -53,14 +49,40 @@ def _masses(text: str, file: str, design: Design) -> Measurement:
 
 
 def _figures(text: str, file: str, design: Design) -> Measurement:
-    """Layers, heights and hours in the note against the design."""
-    mould = design.mould
-    stops_mm = mould.stops_mm(design.stack.cover_mm)
-    wanted = [f"{v:g}" for v in (mould.layer_mm, mould.floor_mm, stops_mm, mould.cure_h)]
-    matches = [re.findall(pattern, text) for pattern in _HOW]
-    wrong = sum(found != [v] for found, v in zip(matches, wanted, strict=True))
-    note = f"of layers, floor, stops and hours: {', '.join(wanted)}"
-    return Measurement("mould.note", file, float(wrong), 0, 0, "wrong figures", note)
+    """Layers, heights, ratio, times, temperature and the side that is up, wherever the note has
+    them, against the design."""
+    wanted = dict(_wanted(design))
+    found = {pattern: re.findall(pattern, text) for pattern in wanted}
+    wrong = [
+        f"{pattern}: {found[pattern]}, not {values}"
+        for pattern, values in wanted.items()
+        if [v if isinstance(v, tuple) else (v,) for v in found[pattern]] != values
+    ]
+    return count("mould.note", file, wrong, "wrong figures")
+
+
+def _wanted(design: Design) -> Iterator[tuple[str, Figures]]:
+    """Patterns of the note, each with its figures wherever it stands."""
+    mould, stack = design.mould, design.stack
+    stops_mm, hours, warm = mould.stops_mm(stack.cover_mm), f"{mould.cure_h:g}", f"{mould.cure_c:g}"
+    yield r"layers of (\S+) mm", [(f"{mould.layer_mm:g}",)]
+    yield r"floor at (\S+) mm", [(f"{mould.floor_mm:g}",)]
+    yield r"stops\s+at (\S+) mm", [(f"{stops_mm:g}",)]
+    yield r"\(`print/printing\.md`\): (\w+) side (\w+),", [("open", "up")]
+    yield r"\| curing at (\S+) °C \| (\S+) h \|", [(warm, hours)]
+    yield r"Leave it for (\S+) h at (\S+) °C", [(hours, warm)]
+    yield r"Wait (\S+) h at (\S+) °C", [(hours, warm)]
+    yield r"Not before (\S+) h\.", [(hours,)]
+    one, other = (f"{grams:g}" for grams in mould.trial_g)
+    yield r"Mix (\S+) g of part (\S+) with (\S+) g of part ([A-Z])", [(one, "A", other, "B")]
+    glued: Figures = [(f"{mould.glue_hard_h:g}",)] if stack.sunk else []
+    yield r"Let it harden for (\d\S*) h", glued
+    workable: Figures = [(f"{mould.pot_life_min:g}",)] if mould.pot_life_min else []
+    yield r"can be worked for some (\S+) min at room", workable
+    dried: Figures = [(f"{mould.primer_dry_min:g}",)] if mould.primer else []
+    yield r"Let it dry for (\S+) min", dried
+    yield r"Time:\*\* 20 min, (\S+) min to dry", dried
+    yield r"with (\S+)% for the cup", [(f"{100 * mould.waste_fraction:.0f}",)]
 
 
 def _clamped(text: str, file: str, design: Design) -> Measurement:

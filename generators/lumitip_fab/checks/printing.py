@@ -8,11 +8,26 @@ from pathlib import Path
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.design.making import Filament
+from lumitip_fab.design.mould import printed_times
 
 READS = ("print/*",)
 _NOTE = "print/printing.md"
 _LEAST_LAYER_MM = 0.01
 _ROUNDING_MM = 1e-4
+_STANDING = "on the mount face, tip up"
+_LIES = {
+    "backing": _STANDING,
+    "interface": _STANDING,
+    "mould": "open side up",
+    "clamp": "on its flat back, feet up",
+    "prop": "stop up",
+    "card": "rails up; black, opaque",
+    "sheet": 'on its outer face, for `mask.route = "tpu"`',
+    "coupon": 'on its outer face, for `mask.route = "tpu"`',
+}
+"""How a part lies on the bed, by the last word of its file's name."""
+_BENDING = "on its front, groove up"
+"""How a backing lies that has an interface."""
 _WIDTHS = (
     "extrusion_width",
     "first_layer_extrusion_width",
@@ -96,13 +111,13 @@ def _wanted(design: Design, filament: Filament) -> dict[str, str]:
 
 
 def _parts(outputs: Path, design: Design) -> Measurement:
-    """Every printed part of a finger and the gauge card are listed with settings, filament and
-    layers, none else."""
+    """Every printed part of a finger and the gauge card are listed with settings, filament,
+    layers, the side that is up and how often each is printed, none else."""
     try:
         text = (outputs / _NOTE).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as problem:
         return unreadable("printing.parts", _NOTE, str(problem))
-    row = r"^\| `(\S+\.3mf)` \| `(\S+)` \| (.+?) \| (\S+) mm \|"
+    row = r"^\| `(\S+\.3mf)` \| `(\S+)` \| (.+?) \| (\S+) mm \| (.+?) \|$"
     listed = set(re.findall(row, text, re.MULTILINE))
     kinds = ("backing", *(["interface"] if design.interfaces else []), "mould")
     fingers = design.fingers
@@ -111,10 +126,18 @@ def _parts(outputs: Path, design: Design) -> Measurement:
     paths += [part.file.replace(".stl", ".3mf") for part in others]
     paths += [*(f"mask/{finger.name}_sheet.3mf" for finger in fingers), "mask/coupon.3mf"]
     wanted = {
-        (path, of.file, of.name, f"{of.layer_mm:g}")
+        (path, of.file, of.name, f"{of.layer_mm:g}", _lies(path, design))
         for path in paths
         for of in [design.slicing.of(path)]
     }
     wrong = listed ^ wanted
     note = f"listed wrongly or not at all, of {len(paths)}"
     return Measurement("printing.parts", _NOTE, float(len(wrong)), 0, 0, "parts", note)
+
+
+def _lies(path: str, design: Design) -> str:
+    """How a part lies on the bed, and how often it is printed."""
+    kind = Path(path).stem.rpartition("_")[2]
+    how = _BENDING if kind == "backing" and design.interfaces else _LIES[kind]
+    times = printed_times(design.mould_accessories, path.replace(".3mf", ".stl"))
+    return f"{how}; print {times}" if times > 1 else how
