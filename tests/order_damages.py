@@ -60,6 +60,13 @@ def board_gone(order: Path) -> None:
     (order.parent / "receiver.kicad_pcb").unlink()
 
 
+def edge_on_another_layer(order: Path) -> None:
+    path = order.parent / "receiver.kicad_pcb"
+    text = path.read_text(encoding="utf-8")
+    assert '(layer "Edge.Cuts")' in text
+    path.write_text(text.replace('(layer "Edge.Cuts")', '(layer "Dwgs.User")'), encoding="utf-8")
+
+
 def part_out_of_kicads_lists(order: Path) -> None:
     path = order.parent / "receiver.kicad_pcb"
     edit(path, "(attr smd)", "(attr smd exclude_from_bom exclude_from_pos_files)")
@@ -75,4 +82,5 @@ FOLDER_DAMAGES: dict[Callable[[Path], None], set[str]] = {
     zip_with_a_password: {"readable"},
     zips_swapped: {"readable"},
     board_gone: {"board"},
+    edge_on_another_layer: {"board"},
 }

@@ -107,6 +107,7 @@ DAMAGES: dict[str, tuple[Callable[[Path], None], set[str]]] = {
     "note: other apertures": (note_edited(r"The \d+ ap", "The 31 ap"), {"note"}),
     "note: other readings": (note_edited(r"`\[100, 100\]`", "`[99.2, 100]`"), {"note"}),
     "note truncated": (truncated(NOTE), {"note"}),
+    "note with no figure": (note_edited(r"\| 1 \| (\S+) \|", r"| 1 | \1.0 |"), {"note"}),
     "note missing": (lambda out: (out / NOTE).unlink(), {"note"}),
     "SVG truncated": (truncated(SVG), {"svg"}),
 }

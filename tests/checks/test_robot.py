@@ -172,6 +172,11 @@ DAMAGES: tuple[tuple[str, Damage, set[str]], ...] = (
         placed("visual", 'xyz="0 0 0.01"'),
         {"seat", "closed", "open", "centre", "inertia", "reach"},
     ),
+    (
+        "a layer of another name",
+        substituted('<visual name="emitter_board"', '<visual name="emitter_plate"'),
+        {"tree"},
+    ),
     ("touches elsewhere", placed("collision", 'xyz="0 0 0.01"'), {"reach"}),
     ("touches turned", placed("collision", 'rpy="0 0 0.1"'), {"reach"}),
     ("another macro", edited(MACROS, 'name="lumitip_emitter"', 'name="emitter"'), {"macros"}),

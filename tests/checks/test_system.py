@@ -83,6 +83,14 @@ def centre_unstated(scene: Scene) -> None:
     del scene["scenes"][0]["extras"]["tcp_mm"]
 
 
+def centre_in_words(scene: Scene) -> None:
+    scene["scenes"][0]["extras"]["tcp_mm"] = "100 mm"
+
+
+def centre_null(scene: Scene) -> None:
+    scene["scenes"][0]["extras"]["tcp_mm"] = None
+
+
 def body_renamed(scene: Scene) -> None:
     node(scene, "holder.tray")["name"] = "tray"
 
@@ -119,6 +127,8 @@ MOVED = {
     led_moved: {"fingers"},
     centre_edited: {"tcp"},
     centre_unstated: {"tcp"},
+    centre_in_words: {"tcp"},
+    centre_null: {"tcp"},
     body_renamed: SCENE,
     no_nodes: SCENE,
 }

@@ -154,7 +154,7 @@ def _inward(finger: Finger) -> float:
 def _openings(scene: Scene, design: Design) -> Iterator[Measurement]:
     """Skin to skin as it is and as the file says, with the gripper open, and closed."""
     stated = scene.extras.get("opening_mm")
-    if stated is None:
+    if not isinstance(stated, int | float):
         yield unreadable("assembly.opening", _FILE, "states no opening_mm")
     else:
         opening = _opening_mm(scene, design)

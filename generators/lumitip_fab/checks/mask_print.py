@@ -109,10 +109,16 @@ def measure_note(
         text = (outputs / subject).read_text(encoding="utf-8")
     except (OSError, ValueError) as error:
         raise PageError(f"cannot be read: {error!r:.200}") from error
-    rows = {int(n): (float(w), float(h), float(r)) for n, w, h, r in _ROW.findall(text)}
     count, side, readings = _COUNT.search(text), _SIDE.search(text), _READINGS.search(text)
-    if not rows or not count or not side or (not readings and design.mask.route == "film"):
-        raise PageError("does not state flaps, apertures, height of the side or readings")
+    if not count or not side or (not readings and design.mask.route == "film"):
+        raise PageError("does not state apertures, height of the side or readings")
+    try:
+        rows = {int(n): (float(w), float(h), float(r)) for n, w, h, r in _ROW.findall(text)}
+        printed = np.array([float(v) for v in (count[1], side[1], *_groups(readings))])
+    except ValueError as error:
+        raise PageError(f"has a figure that is none: {error}") from error
+    if not rows:
+        raise PageError("does not state flaps")
     odd = len(set(numbers) ^ rows.keys())
     yield Measurement("mask.note", f"{subject} rows", odd, 0, 0, "flaps", "missing or too many")
     off = np.array(
@@ -131,11 +137,13 @@ def measure_note(
         of = Subject("mask", f"{subject} {name}")
         yield of.figure("note", worst, 0, limit, note="worst row against the A4 page")
     whole = design.stack.plate_mm + design.stack.cover_mm
-    stated = [count[1], side[1], *(readings.groups() if readings else ())]
-    printed = np.array([float(v) for v in stated])
     wanted = np.array([len(finger.cells), whole, *design.mask.measured_ruler_mm])[: len(printed)]
     off_most, note = np.abs(printed - wanted).max(), "apertures, height of the side, readings"
     yield Subject("mask", f"{subject} figures").figure("note", off_most, 0, ROUNDED_MM, "", note)
+
+
+def _groups(found: re.Match[str] | None) -> tuple[str, ...]:
+    return found.groups() if found else ()
 
 
 def _figures(flap: Flap, design: Design) -> np.ndarray[tuple[int], np.dtype[np.float64]]:

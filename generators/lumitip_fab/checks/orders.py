@@ -51,6 +51,9 @@ def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurem
     except OutputError as error:
         yield unreadable("orders.board", path_of(name), str(error))
         return
+    if read.outline.is_empty:
+        yield unreadable("orders.board", path_of(name), "its edge is not drawn, or is open")
+        return
     folder = (outputs / path_of(name)).parent
     flexible = read.flexible
     painted: Painted = {}

@@ -59,7 +59,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     except OutputError as error:
         yield from (unreadable(f"robot.{name}", _FILE, str(error)) for name in _CHECKS)
     else:
-        wrong = _misplaced(model)
+        wrong = [*_misplaced(model), *_unseen(model, design)]
         yield _URDF.count("tree", wrong, "links and joints")
         if not wrong:
             yield from _places(model, design)
@@ -86,6 +86,14 @@ def _misplaced(model: Model) -> list[str]:
     ]
     wrong += ["robot's name"] if model.name != "lumitip" else []
     return wrong + (["settings for MuJoCo"] if model.settings != _SETTINGS else [])
+
+
+def _unseen(model: Model, design: Design) -> Iterator[str]:
+    """Layers of a finger that its link does not show under their own names."""
+    for finger in design.fingers:
+        link = model.links.get(f"lumitip_{finger.name}")
+        names = [f"{finger.name}_{layer}" for layer in design.layers]
+        yield from (f"no visual {name}" for name in names if link and name not in link.visuals)
 
 
 def _unlike(model: Model, design: Design) -> Iterator[str]:

@@ -215,7 +215,8 @@ def _centre(tcp: Vectors, scene: Scene, design: Design) -> Iterator[Measurement]
     yield Measurement("system.tcp", _FILE, float(tcp[2]), *limits, "mm", note)
     aside = float(np.hypot(*tcp[:2]))
     yield Measurement("system.tcp", f"{_FILE} aside", aside, 0, PLACE_MM, "mm", "off the axis")
-    stated = scene.extras.get("tcp_mm", np.nan)
+    extra = scene.extras.get("tcp_mm")
+    stated = float(extra) if isinstance(extra, int | float) else np.nan
     yield Measurement("system.tcp", f"{_FILE} stated", stated, *limits, "mm", "in the file")
 
 

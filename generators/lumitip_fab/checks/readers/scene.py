@@ -55,7 +55,7 @@ class Scene:
     """Contents of a GLB file."""
 
     nodes: dict[str, Node]
-    extras: dict[str, float]
+    extras: dict[str, object]
 
 
 def read_scene(path: Path) -> Scene:
