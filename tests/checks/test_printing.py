@@ -120,6 +120,14 @@ def test_a_damage_fails_its_check(
     assert failing(damaged) == expected
 
 
+def test_a_file_that_no_filament_has(settings: Path, tmp_path: Path) -> None:
+    damaged = Path(shutil.copytree(settings, tmp_path / "damaged"))
+    (damaged / "print/petg.ini~").write_text("an editor's copy")
+    assert failing(damaged) == set()
+    shutil.copy(damaged / "print" / INI, damaged / "print/petg_fast.ini")
+    assert failing(damaged) == {"files"}
+
+
 def test_lost_files_are_told(settings: Path, tmp_path: Path) -> None:
     damaged = Path(shutil.copytree(settings, tmp_path / "damaged"))
     (damaged / "print" / INI).unlink()

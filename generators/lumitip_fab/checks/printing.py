@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
+from lumitip_fab.checks.places import files_in
 from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.design.making import Filament
@@ -51,6 +52,9 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         yield _settings(outputs, design, filament)
     yield _mould_layers(outputs, design)
     yield _parts(outputs, design)
+    wanted = {_NOTE, *(filament.file for filament in design.slicing.filaments)}
+    others = sorted({f"print/{name}" for name in files_in(outputs / "print")} - wanted)
+    yield count("printing.files", "print", others, "files that no filament of the design has")
 
 
 def _mould_layers(outputs: Path, design: Design) -> Measurement:
