@@ -82,10 +82,16 @@ def replaced(old: str, new: str) -> Change:
     return lambda text, _: text.replace(old, new)
 
 
+def nets_exchanged(text: str, _: Path) -> str:
+    """Ground and a signal by each other's names."""
+    names = {"GND": "S0", "S0": "GND"}
+    return re.sub(r"(?<=%TO\.N,)(GND|S0)(?=\*)", lambda m: names[m[1]], text)
+
+
 COPPER_DAMAGES: dict[str, tuple[str, Change, set[str]]] = {
-    "short": ("F_Cu.gbr", short, {"copper", "short"}),
-    "cut": ("F_Cu.gbr", cut, {"copper", "open"}),
-    "pad lost": ("F_Cu.gbr", pad_lost, {"copper", "bare"}),
+    "short": ("F_Cu.gbr", short, {"copper", "short", "names"}),
+    "cut": ("F_Cu.gbr", cut, {"copper", "open", "names"}),
+    "pad lost": ("F_Cu.gbr", pad_lost, {"copper", "bare", "names"}),
     "notch": ("Edge_Cuts.gbr", notch, {"routed"}),
     "open edge": ("Edge_Cuts.gbr", gap, {"routed"}),
     "layer of the other side": ("F_Cu.gbr", replaced("L1,Top", "L2,Bot"), {"roles"}),
@@ -110,6 +116,14 @@ COPPER_DAMAGES: dict[str, tuple[str, Change, set[str]]] = {
     "names exchanged": ("F_Silkscreen.gbr", words_exchanged, {"letters"}),
     "name moved": ("F_Silkscreen.gbr", word_moved, {"letters"}),
     "references exchanged": ("F_Silkscreen.gbr", reference_exchanged, {"letters"}),
+    "nets exchanged": ("F_Cu.gbr", nets_exchanged, {"names"}),
+    "nets without a name": (
+        "B_Cu.gbr",
+        lambda text, _: re.sub(r"%TO\.N,.*\n", "", text),
+        {"names"},
+    ),
+    "another pad": ("F_Cu.gbr", replaced("%TO.P,Q1,1*%", "%TO.P,Q1,2*%"), {"names"}),
+    "a part of no board": ("F_Cu.gbr", replaced("%TO.P,Q1,1*%", "%TO.P,Q99,1*%"), {"names"}),
     "repeated": ("F_Cu.gbr", replaced("%LPD*%", "%LPD*%\n%SRX2Y1I50J0*%"), {"readable"}),
 }
 """File, damage, and the checks that fail."""

@@ -82,6 +82,54 @@ def black_letters(files: Files) -> None:
     edit(files, "fabrication.txt", b"Silkscreen: white", b"Silkscreen: black")
 
 
+def another_material(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"Material: .*", b"Material: CEM-1")
+
+
+def open_vias(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"Vias: .*", b"Vias: open")
+
+
+def no_electrical_test(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"Electrical test: .*", b"Electrical test: none")
+
+
+def mask_on_the_back_only(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"black, on both sides", b"black, on the back only")
+
+
+def letters_on_the_back_only(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"white, on both sides", b"white, on the back only")
+
+
+def a_line_more_of_the_fabrication_note(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"Vias: ", b"Edges: plated\nVias: ")
+
+
+def a_figure_twice(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"Copper: ", b"Copper: 70 um on each side\nCopper: ")
+
+
+def fabrication_note_of_another_design(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"design \w+", b"design 00000000")
+
+
+def either_way_round(files: Files) -> None:
+    edit(files, "assembly.txt", rb"(\n.*: either way)", rb"\nQ1 to Q13: either way round.\1")
+
+
+def not_to_be_placed(files: Files) -> None:
+    edit(files, "assembly.txt", rb": either way round\.", b": do not place.")
+
+
+def check_left_out(files: Files) -> None:
+    edit(files, "assembly.txt", rb"CHECK BEFORE PLACING: .*\n", b"")
+
+
+def place_of_a_part_of_no_board(files: Files) -> None:
+    edit(files, "assembly.txt", rb"(Q5  .*\n)", rb"\1Q99  collector 1.000 1.000  emitter 2.0 1.0\n")
+
+
 def no_stop_line(files: Files) -> None:
     del files["STOP_READ_FIRST.txt"]
 
@@ -101,7 +149,7 @@ NOTE_DAMAGES: dict[Damage, set[str]] = {
     note_of_a_place: {"note"},
     note_without_a_figure: {"note"},
     note_without_a_part: {"note"},
-    note_of_an_assumed_rotation: {"assumed"},
+    note_of_an_assumed_rotation: {"assumed", "note"},
     thickness_of_the_fabrication_note: {"fabrication"},
     thickness_without_a_tolerance: {"fabrication"},
     wide_tolerance_of_the_thickness: {"fabrication"},
@@ -112,6 +160,18 @@ NOTE_DAMAGES: dict[Damage, set[str]] = {
     thin_copper: {"fabrication"},
     bare_copper: {"fabrication"},
     black_letters: {"fabrication"},
+    another_material: {"fabrication"},
+    open_vias: {"fabrication"},
+    no_electrical_test: {"fabrication"},
+    mask_on_the_back_only: {"fabrication"},
+    letters_on_the_back_only: {"fabrication"},
+    a_line_more_of_the_fabrication_note: {"fabrication"},
+    a_figure_twice: {"fabrication"},
+    fabrication_note_of_another_design: {"fabrication"},
+    either_way_round: {"note"},
+    not_to_be_placed: {"note"},
+    check_left_out: {"note"},
+    place_of_a_part_of_no_board: {"note"},
     no_stop_line: {"stop"},
     stop_line_of_other_parts: {"stop"},
     stop_line_names_others_below: {"stop"},

@@ -132,6 +132,18 @@ def test_a_missing_file_fails_exactly_these_checks(
     assert failing(damaged_sketch) == fails
 
 
+@pytest.mark.parametrize("name", ["old.cpp", "old.h", "second.ino", "src/old.c"])
+def test_a_further_source_fails(name: str, damaged_sketch: Path) -> None:
+    path = damaged_sketch / "firmware" / name
+    path.parent.mkdir(exist_ok=True)
+    path.write_text("void setup() {}\n")
+    assert failing(damaged_sketch) == {"sources"}
+    path.unlink()
+    (damaged_sketch / "firmware/.editor.h").write_text("")
+    (damaged_sketch / "firmware/firmware.ino~").write_text("")
+    assert failing(damaged_sketch) == set()
+
+
 def test_a_sketch_of_another_design_fails(damaged_sketch: Path, design_dir: Path) -> None:
     d = derive(load(design_dir / "presets" / "asymmetric.toml"))
     for artefact in firmware_files(d):

@@ -13,6 +13,7 @@ pytestmark = pytest.mark.slow
 RECEIVER = "boards/receiver"
 PRETTY = f"{RECEIVER}/lumitip.pretty"
 DETECTOR, CHIP = f"{PRETTY}/PTRC2012X80N.kicad_mod", f"{PRETTY}/SOP65P640X110-16N.kicad_mod"
+BOARD = f"{RECEIVER}/receiver.kicad_pcb"
 SYMBOLS, PROJECT = f"{RECEIVER}/lumitip.kicad_sym", f"{RECEIVER}/receiver.kicad_pro"
 Damage = Callable[[Path], None]
 
@@ -55,6 +56,42 @@ def in_settings(more: dict[str, object]) -> Damage:
     return damage
 
 
+def supply_clearance(folder: Path) -> None:
+    """A gap round supplies that no board has."""
+    path = folder / PROJECT
+    record = json.loads(path.read_text())
+    (supply,) = (c for c in record["net_settings"]["classes"] if c["name"] == "supply")
+    supply["clearance"] = 2
+    path.write_text(json.dumps(record))
+
+
+def zones_shrunk(folder: Path) -> None:
+    """Outlines of 1 mm round fills that stay as they are until KiCad fills again."""
+    path = folder / BOARD
+    corners = "(pts (xy 150 100) (xy 151 100) (xy 151 101) (xy 150 101))"
+    text, found = re.subn(r"(\n    \(polygon )\(pts.*\)(\)\n)", rf"\1{corners}\2", path.read_text())
+    assert found == 2
+    path.write_text(text)
+
+
+def in_setup(setting: str) -> Damage:
+    return edited(BOARD, "(setup ", f"(setup {setting} ")
+
+
+def kept_out(folder: Path) -> None:
+    """An area that KiCad leaves free of copper, on one side of a filled board."""
+    path = folder / BOARD
+    zone = """
+  (zone (net 0) (net_name "") (layer "F.Cu") (hatch edge 0.5) (connect_pads (clearance 0))
+    (min_thickness 0.2)
+    (keepout (tracks allowed) (vias allowed) (pads allowed) (copperpour not_allowed))
+    (fill (thermal_gap 0.25) (thermal_bridge_width 0.3))
+    (polygon (pts (xy 100 50) (xy 200 50) (xy 200 150) (xy 100 150))))
+)
+"""
+    path.write_text(path.read_text().rstrip()[:-1] + zone.lstrip("\n"))
+
+
 DAMAGES: dict[str, tuple[Damage, set[str]]] = {
     "kind": (edited(f"{RECEIVER}/fp-lib-table", '"KiCad"', '"Eagle"'), {"tables"}),
     "name": (edited(f"{RECEIVER}/sym-lib-table", '"lumitip"', '"parts"'), {"tables"}),
@@ -89,7 +126,10 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
     "kind of pin": (edited(SYMBOLS, "pin passive", "pin output"), {"symbols"}),
     "symbol's name": (edited(SYMBOLS, '(symbol "R"', '(symbol "RR"'), {"symbols"}),
     "symbols gone": (lambda folder: (folder / SYMBOLS).unlink(), {"symbols", "tables"}),
-    "clearance": (edited(PROJECT, '"min_clearance": 0.', '"min_clearance": 1.'), {"project"}),
+    "clearance": (
+        edited(PROJECT, '"min_clearance": 0.', '"min_clearance": 1.'),
+        {"project", "rules"},
+    ),
     "small clearance": (
         edited(PROJECT, '"min_clearance": 0.2', '"min_clearance": 0.01'),
         {"project", "rules"},
@@ -126,6 +166,69 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
         in_settings({"rule_severities": {"clearance": "ignore"}}),
         {"rules"},
     ),
+    "a wide edge": (
+        edited(PROJECT, '"min_copper_edge_clearance": 0.5', '"min_copper_edge_clearance": 5'),
+        {"rules"},
+    ),
+    "wide holes": (
+        edited(PROJECT, '"min_hole_clearance": 0.25', '"min_hole_clearance": 3'),
+        {"rules"},
+    ),
+    "a wide class": (supply_clearance, {"rules"}),
+    "a further rule": (
+        edited(PROJECT, '"min_hole_clearance"', '"min_connection": 2, "min_hole_clearance"'),
+        {"rules"},
+    ),
+    "high letters": (
+        edited(PROJECT, '"min_text_height": 0.6', '"min_text_height": 6'),
+        {"rules"},
+    ),
+    "small zone": (zones_shrunk, {"board"}),
+    "large zone": (edited(BOARD, "(polygon (pts (xy ", "(polygon (pts (xy 1"), {"board"}),
+    "zone that joins nothing": (
+        edited(BOARD, "(connect_pads (clearance 0.2))", "(connect_pads no (clearance 0.2))"),
+        {"board"},
+    ),
+    "zone without gaps": (
+        edited(BOARD, "(connect_pads (clearance 0.2))", "(connect_pads (clearance 0))"),
+        {"board"},
+    ),
+    "zone of thin spokes": (
+        edited(BOARD, "(thermal_bridge_width 0.3)", "(thermal_bridge_width 0.1)"),
+        {"board"},
+    ),
+    "zone of hatches": (
+        edited(BOARD, "(fill yes (thermal", "(fill yes (mode hatch) (thermal"),
+        {"board"},
+    ),
+    "zone below another": (
+        edited(BOARD, "(min_thickness 0.2)", "(priority 3) (min_thickness 0.2)"),
+        {"board"},
+    ),
+    "no paste": (in_setup("(pad_to_paste_clearance_ratio -0.5)"), {"board"}),
+    "less paste": (in_setup("(pad_to_paste_clearance -0.1)"), {"board"}),
+    "wide openings": (
+        edited(BOARD, "(pad_to_mask_clearance 0.05)", "(pad_to_mask_clearance 0.5)"),
+        {"board"},
+    ),
+    "origin elsewhere": (
+        edited(BOARD, "(aux_axis_origin 150 100)", "(aux_axis_origin 0 0)"),
+        {"board"},
+    ),
+    "a part left out": (edited(BOARD, "(attr smd)", "(attr smd dnp)"), {"board"}),
+    "a part without paste": (
+        edited(BOARD, "(attr smd)", "(attr smd) (solder_paste_ratio -0.5)"),
+        {"board"},
+    ),
+    "a pad that keeps off": (
+        edited(BOARD, '(pad "1" smd rect', '(pad "1" smd rect (clearance 5)'),
+        {"board"},
+    ),
+    "a pad joined to nothing": (
+        edited(BOARD, '(pad "1" smd rect', '(pad "1" smd rect (zone_connect 0)'),
+        {"board"},
+    ),
+    "fill in a keep-out": (kept_out, {"board"}),
     "exclusions": (in_settings({"drc_exclusions": ["clearance|1|2"]}), {"rules"}),
 }
 

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from lumitip_fab.checks.run import run_checks
+from lumitip_fab.pipeline.manifest import sha256_of
 
 
 def failing(folder: Path) -> set[str]:
@@ -32,6 +33,22 @@ def test_a_file_lost_or_edited_behind_its_back(
         ("backing/receiver_backing.stl", 0, 0, -1.0),
         ("mould/receiver_mould.stl", 2, 3, 0.0),
         ("mould/emitter_mould.stl", 0, 3, 0.2),
+        ("mould/emitter_mould.3mf", 0, 3, 0.2),
+        ("mould/clamp.step", 0, 3, 37.0),
+        ("holder/holder.stl", 0, 3, 37.0),
+        ("holder/holder.3mf", 2, 3, -11.0),
+        ("holder/holder.step", 1, 3, -11.0),
+        ("flange/flange_lower.stl", 0, 3, 37.0),
+        ("flange/flange_upper.stl", 2, 3, -11.0),
+        ("fit/fit_plate.stl", 0, 3, 37.0),
+        ("mask/coupon.stl", 0, 3, 37.0),
+        ("assembly/assembly.glb", 0, 3, 500.0),
+        ("assembly/assembly.glb", 0, 0, 1.0),
+        ("assembly/assembly.step", 1, 3, 500.0),
+        ("assembly/system.glb", 2, 3, 500.0),
+        ("boards/flange/flange.kicad_pcb", 0, 3, 0.0),
+        ("mask/emitter_cut.dxf", 0, 0, 1.0),
+        ("robot/meshes/emitter_film.stl", 0, 3, 37.0),
     ],
 )
 def test_a_matrix_that_puts_a_part_elsewhere(
@@ -42,6 +59,40 @@ def test_a_matrix_that_puts_a_part_elsewhere(
     record["files"][path]["to_sensor"][row][column] = value
     file.write_text(json.dumps(record))
     assert failing(damaged) == {"manifest.frames"}
+
+
+@pytest.mark.parametrize("frame", ["sensor", ""])
+def test_a_part_in_another_frame(damaged: Path, frame: str) -> None:
+    file = damaged / "manifest.json"
+    record = json.loads(file.read_text())
+    record["files"]["holder/holder.stl"]["frame"] = frame
+    file.write_text(json.dumps(record))
+    assert failing(damaged) == {"manifest.frames"}
+
+
+@pytest.mark.parametrize(
+    ("name", "check"),
+    [
+        ("backing/emitter_backing.gcode", "endings"),
+        ("backing/old_backing.stl", "frames"),
+        ("print/emitter_backing.gcode", "endings"),
+        ("firmware/old.cpp", "endings"),
+        ("old/notes.md", "endings"),
+        ("boards/emitter/Makefile", "endings"),
+    ],
+)
+def test_a_listed_file_that_no_step_writes(damaged: Path, name: str, check: str) -> None:
+    (damaged / name).parent.mkdir(exist_ok=True)
+    (damaged / name).write_text("of another design")
+    file = damaged / "manifest.json"
+    record = json.loads(file.read_text())
+    record["files"][name] = record["files"]["bom.csv"] | {
+        "sha256": sha256_of(damaged / name),
+        "bytes": (damaged / name).stat().st_size,
+        "facts": {},
+    }
+    file.write_text(json.dumps(record))
+    assert failing(damaged) == {f"manifest.{check}"}
 
 
 @pytest.mark.parametrize(
@@ -184,6 +235,6 @@ def test_no_manifest(damaged: Path) -> None:
 
 def test_every_check_passes_undamaged(outputs: Path) -> None:
     outcome = run_checks(outputs, ["manifest"])
-    names = ("kinds", "files", "strays", "matrices", "facts", "frames")
+    names = ("kinds", "files", "strays", "matrices", "facts", "frames", "endings")
     assert outcome.names == {f"manifest.{name}" for name in names}
     assert outcome.failed == ()

@@ -80,6 +80,17 @@ EDITS = [
     (INI, "min_fan_speed = 30", "min_fan_speed = 100", {"settings"}),
     (INI, "max_fan_speed = 50", "max_fan_speed = 0", {"settings"}),
     (INI, "retract_length = 0.8", "retract_length = 8", {"settings"}),
+    (INI, "first_layer_temperature = 245", "first_layer_temperature = 145", {"settings"}),
+    (INI, "\nperimeters = 3", "\nperimeters = 0", {"settings"}),
+    (INI, "brim_width = 3", "brim_width = 0", {"settings"}),
+    (SHEET, "brim_width = 0", "brim_width = 3", {"settings"}),
+    (INI, "\nskirts = 0\n", "\n", {"settings"}),
+    (INI, "\nskirts = 0\n", "\nskirts = 0\nspiral_vase = 1\n", {"settings"}),
+    (INI, "\nskirts = 0\n", "\nskirts = 0\nxy_size_compensation = -0.3\n", {"settings"}),
+    (INI, "\nskirts = 0\n", "\nskirts = 0\nskirts = 0\n", {"settings"}),
+    (INI, "first_layer_speed = 20", "first_layer_speed = 200", {"settings"}),
+    (INI, "bridge_fan_speed = 50", "bridge_fan_speed = 0", {"settings"}),
+    (INI, "fan_always_on = 1", "fan_always_on = 0", {"settings"}),
     (NOTE, "| `mould/emitter_mould.3mf`", "| `mould/emitter_cast.3mf`", {"parts"}),
     (NOTE, "| `gauge/gauge_card.3mf`", "| `gauge/card.3mf`", {"parts"}),
     (NOTE, "petg.ini` | PETG | 0.2 mm | on", "pla.ini` | PLA | 0.2 mm | on", {"parts"}),
@@ -111,6 +122,14 @@ def test_a_damage_fails_its_check(
     assert old in text
     path.write_text(text.replace(old, new, 1), encoding="utf-8")
     assert failing(damaged) == expected
+
+
+def test_a_file_that_no_filament_has(settings: Path, tmp_path: Path) -> None:
+    damaged = Path(shutil.copytree(settings, tmp_path / "damaged"))
+    (damaged / "print/petg.ini~").write_text("an editor's copy")
+    assert failing(damaged) == set()
+    shutil.copy(damaged / "print" / INI, damaged / "print/petg_fast.ini")
+    assert failing(damaged) == {"files"}
 
 
 def test_lost_files_are_told(settings: Path, tmp_path: Path) -> None:

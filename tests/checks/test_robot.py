@@ -188,6 +188,37 @@ DAMAGES: tuple[tuple[str, Damage, set[str]], ...] = (
     ("a macro's joint", edited(MACROS, "receiver_mount", "receiver"), {"macros"}),
     ("a macro's place", edited(MACROS, 'name="origin" />', 'name="place" />'), {"macros"}),
     (
+        "a macro's link is written out",
+        edited(MACROS, 'link name="${prefix}receiver"', 'link name="lumitip_receiver"'),
+        {"macros"},
+    ),
+    (
+        "a macro's joint is written out",
+        edited(MACROS, '"${prefix}emitter_mount"', '"lumitip_emitter_mount"'),
+        {"macros"},
+    ),
+    (
+        "a macro's child is written out",
+        edited(MACROS, 'child link="${prefix}emitter"', 'child link="lumitip_emitter"'),
+        {"macros"},
+    ),
+    (
+        "a macro's material is written out",
+        edited(MACROS, '"${prefix}receiver_film"', '"lumitip_receiver_film"'),
+        {"macros"},
+    ),
+    ("a macro's meshes are elsewhere", edited(MACROS, "${meshes}/", "meshes/", 99), {"macros"}),
+    (
+        "a link that no macro has",
+        edited(MACROS, "</robot>", '<link name="world" /></robot>'),
+        {"macros"},
+    ),
+    (
+        "a macro that skips its link",
+        substituted(r"(<link(?s:.*?)</link>)", r'<xacro:if value="0">\1</xacro:if>', MACROS),
+        {"macros"},
+    ),
+    (
         "mass in one file",
         edited(URDF, '<mass value="0.01', '<mass value="0.02'),
         {"mass", "macros"},

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from lumitip.layout import Layout
 from lumitip.protocol import bluetooth, packet
+from lumitip_fab.checks.places import files_in
 from lumitip_fab.checks.readers.header import faults, uncommented
 from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design
@@ -166,7 +167,8 @@ def _form(headers: Mapping[str, str]) -> Measurement:
 
 
 def _sources(outputs: Path) -> Measurement:
-    """The files that all designs share are there, and as they are shipped."""
+    """The files that all designs share are there, as they are shipped, and none else but both
+    headers: a compiler takes all that lies in the folder."""
     shipped = firmware_sources()
     if not shipped:
         return unreadable("firmware.sources", _SKETCH, "this installation has no firmware")
@@ -175,6 +177,9 @@ def _sources(outputs: Path) -> Measurement:
         for source in shipped
         if sha256_of(outputs / "firmware" / source.name) != sha256_of(source)
     ]
+    wanted = {f"firmware/{source.name}" for source in shipped} | {_LAYOUT, _PROTOCOL}
+    there = {f"firmware/{name}" for name in files_in(outputs / "firmware")}
+    wrong += sorted(name.removeprefix("firmware/") for name in there - wanted)
     return count("firmware.sources", _SKETCH, wrong, "files are not as this version ships them")
 
 

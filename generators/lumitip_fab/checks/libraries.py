@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from lumitip_fab.checks.board_read import names_of
-from lumitip_fab.checks.project_rules import weaker_rules
+from lumitip_fab.checks.board_settings import other_settings
+from lumitip_fab.checks.project_rules import other_rules
 from lumitip_fab.checks.readers import MALFORMED
 from lumitip_fab.checks.readers.kicad_shapes import (
     Node,
@@ -61,8 +62,11 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         ):
             yield _count(check, subject, unit, wrong(folder))
     for name in (*names_of(design), *(panel.name for panel in design.panels)):
-        weak = weaker_rules(outputs / "boards" / name, design)
-        yield _count("rules", f"boards/{name}", "settings are weaker than the design's", weak)
+        folder, subject = outputs / "boards" / name, f"boards/{name}"
+        rules = other_rules(folder, design)
+        yield _count("rules", subject, "settings are not the design's", rules)
+        settings = other_settings(folder, design)
+        yield _count("board", subject, "settings of the board's file are others", settings)
 
 
 def _count(check: str, subject: str, unit: str, wrong: Iterator[str]) -> Measurement:

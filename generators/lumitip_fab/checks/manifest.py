@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Iterator, Mapping
-from fnmatch import fnmatchcase
 from pathlib import Path, PurePath
 from xml.etree.ElementTree import ParseError
 
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumitip_fab.checks.facts import Facts, other_facts
+from lumitip_fab.checks.places import EDITORS, SOLIDS, named, of_a_kind, places
 from lumitip_fab.checks.readers import MALFORMED
 from lumitip_fab.checks.readers.vertices import corners_mm
 from lumitip_fab.checks.result import Measurement, count, unreadable
@@ -25,15 +25,9 @@ READS = ("*",)
 _FILE = "manifest.json"
 _PLACE_MM = 0.05
 _SQUARE = 1e-6
-_SOLIDS = (".stl", ".3mf", ".step")
 _REPORTS = (manifest.NAME, *manifest.REPORTS, "README.md", "bench-tasks/*")
 """Files that `make outputs` and `make bench` write beside those of a build, and the page of the
 folder `outputs` in the source."""
-_EDITORS = (
-    *(".*", "~*", "*~", "#*#", "_autosave-*", "*.bak", "*-bak", "*.lck", "*-backups"),
-    *("*.kicad_prl", "fp-info-cache", "Thumbs.db", "desktop.ini"),
-)
-"""Names of files and folders that editors, KiCad and desktops keep for themselves."""
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -56,6 +50,10 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     )
     odd = [path for path, entry in sorted(recorded.files.items()) if not _placed(path, entry)]
     yield count("manifest.matrices", _FILE, odd, "matrices that place no file")
+    listed = {path: entry for path, entry in recorded.files.items() if path not in odd}
+    yield count("manifest.frames", _FILE, list(_misplaced(listed, design)), "files misplaced")
+    others = sorted(path for path in recorded.files if not of_a_kind(path))
+    yield count("manifest.endings", _FILE, others, "files of a kind that their folder has not")
     for path, entry in sorted(recorded.files.items()):
         if path in odd or path in no_files:
             continue
@@ -87,9 +85,27 @@ def _placed(path: str, entry: manifest.Entry) -> bool:
     if matrix is None or (matrix[3] != (0, 0, 0, 1)).any():
         return False
     square = matrix[:3, :3] @ matrix[:3, :3].T
-    if path.endswith(_SOLIDS):
+    if path.endswith(SOLIDS):
         return bool(np.allclose(square, np.eye(3), atol=_SQUARE))
     return bool(np.linalg.det(square) > 0)
+
+
+def _misplaced(listed: Mapping[str, manifest.Entry], design: Design) -> Iterator[str]:
+    """Files that lie elsewhere than the design's, and solids of no part of it; models of bought
+    parts and the robot's meshes are in the frame that they are used in."""
+    wanted = places(design)
+    for path, entry in sorted(listed.items()):
+        is_part = path.endswith(SOLIDS) and not path.startswith(("boards/", "robot/"))
+        if path in wanted:
+            frame, matrix = wanted[path]
+            if entry.frame != frame or not _equal(entry.matrix, matrix):
+                yield path
+        elif is_part or (path.endswith(SOLIDS) and not _equal(entry.matrix, np.eye(4))):
+            yield path
+
+
+def _equal(one: Matrix | None, other: Matrix) -> bool:
+    return one is not None and bool(np.allclose(one, other, rtol=0.0, atol=_SQUARE))
 
 
 def _strays(outputs: Path, listed: Mapping[str, manifest.Entry]) -> Iterator[str]:
@@ -105,16 +121,12 @@ def _strays(outputs: Path, listed: Mapping[str, manifest.Entry]) -> Iterator[str
 def _kept(path: str) -> bool:
     """Whether a file is a report, an editor's, or the user's own catalogue beside its output."""
     own = path.startswith("parts/") and (packaged_design() / path).is_file()
-    return own or _named(path, _REPORTS) or _named(PurePath(path).name, _EDITORS)
+    return own or named(path, _REPORTS) or named(PurePath(path).name, EDITORS)
 
 
 def _others(folder: Path) -> bool:
     """Whether a folder is hidden, an editor's, or holds another design's outputs."""
-    return _named(folder.name, _EDITORS) or (folder / manifest.NAME).is_file()
-
-
-def _named(name: str, patterns: tuple[str, ...]) -> bool:
-    return any(fnmatchcase(name, pattern) for pattern in patterns)
+    return named(folder.name, EDITORS) or (folder / manifest.NAME).is_file()
 
 
 def _frame(outputs: Path, path: str, matrix: Matrix, design: Design) -> Measurement:
@@ -161,7 +173,3 @@ def _apart(path: str, low: Vector, high: Vector, design: Design) -> Iterator[flo
         if path == card.file:
             yield from (abs(high[2] - card.gap_mm), abs(low[2] + card.rail_mm))
             yield from (abs(low[1] - card.low_y_mm), abs(high[1] - card.high_y_mm))
-    for holder in design.holders:
-        if path == f"holder/{holder.name}.stl":
-            yield abs(high[2] - holder.top_z_mm)
-            yield from (abs(low[1] - holder.outer.y_min_mm), abs(high[1] - holder.outer.y_max_mm))

@@ -9,6 +9,7 @@ from shapely import affinity, box
 from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks.board_read import ReadBoard, lands
+from lumitip_fab.checks.order_names import measure_names
 from lumitip_fab.checks.order_nets import measure_nets
 from lumitip_fab.checks.order_roles import measure_roles
 from lumitip_fab.checks.readers.gerber import drilled, gerber_area
@@ -45,6 +46,8 @@ def measure_layers(
 
     outline = _in_sensor(read, read.outline)
     yield measure_roles(path, layers)
+    sides = zip(_SIDES, (read.board.layers[0], read.board.layers[-1]), strict=True)
+    yield measure_names(path, read, {on: layers[f"{s} copper"].decode() for s, on in sides})
     copper = [area(f"{side} copper") for side in _SIDES]
     yield from measure_nets(path, read, copper, drilled(layers["plated"].decode()))
     for side, layer in zip(_SIDES, (read.board.layers[0], read.board.layers[-1]), strict=True):

@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import shapely
 
 from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, read_any
 from lumitip_fab.checks.order_layers import (
@@ -16,17 +15,16 @@ from lumitip_fab.checks.order_layers import (
     measure_layers,
     measure_stiffener,
 )
+from lumitip_fab.checks.order_notes import other_figures, other_lines
 from lumitip_fab.checks.order_tables import Files, measure_tables, tables_twice
 from lumitip_fab.checks.panel_read import read_panel
 from lumitip_fab.checks.readers.tables import unpacked
 from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design, Fab, Finger, Flexible
-from lumitip_fab.design.boards import thickness_off_mm
 from lumitip_fab.errors import OutputError
 
 READS = ("boards/*.kicad_pcb", "boards/*.zip", "boards/*.csv")
 STOP_FILE = "STOP_READ_FIRST.txt"
-SIZE_MM = 0.006
 _TERMINALS = re.compile(
     r"^(?P<ref>[DQ]\d+(?:_\d+)?)  (?P<one>[a-z]+) (?P<x1>\S+) (?P<y1>\S+)  "
     r"(?P<other>[a-z]+) (?P<x2>\S+) (?P<y2>\S+)$",
@@ -79,15 +77,18 @@ def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurem
             yield count("orders.same", path, other, "layers that differ")
             yield from measure_tables(path, read, fab, files)
             note, made = (files[f"{name}_{n}.txt"].decode() for n in ("assembly", "fabrication"))
-            wrong = _misled(read, read.finger, note) if read.finger else _misplaced(read, note)
-            yield count("orders.note", path, list(wrong), "parts")
+            drawn = name + ordered.get("stiffener", "")
+            wrong = list(
+                _misled(read, read.finger, note) if read.finger else _misplaced(read, note)
+            )
+            wrong += other_lines(read, fab, note, drawn)
+            yield count("orders.note", path, wrong, "parts and lines")
             yield count("orders.assumed", path, _unsure(read, fab, note), "parts")
-            yield count("orders.fabrication", path, list(_misordered(read, made)), "figures")
+            yield count("orders.fabrication", path, list(other_figures(read, made)), "figures")
             if read.finger:
                 stops = list(_unstopped(read, read.finger, files))
                 yield count("orders.stop", path, stops, "files")
             if flexible:
-                drawn = name + ordered["stiffener"]
                 untold = _untold(note, flexible, design.stack.pcb_mm, drawn)
                 yield count("orders.flexible", path, list(untold), "figures")
         except (OSError, KeyError, ValueError, SyntaxError) as error:
@@ -128,37 +129,6 @@ def _unsure(read: ReadBoard, fab: Fab, note: str) -> list[str]:
         if not of_its_own and max(fits, key=len, default="") in ("", *fab.rotations_assumed):
             unsure.add(ref)
     return sorted(named ^ unsure)
-
-
-def _misordered(read: ReadBoard, note: str) -> Iterator[str]:
-    """Figures of the fabrication note that are not those of the board's file."""
-    edges = shapely.union_all(list(read.board.edges)).bounds
-    tracks = [copper.width_mm for copper in read.board.loose if copper.width_mm]
-    drills = [copper.drill_mm for copper in read.board.copper() if copper.drill_mm]
-    figures = {
-        "Copper layers": (float(len(read.board.layers)),),
-        "Size": (edges[2] - edges[0], edges[3] - edges[1]),
-        "Thickness": (read.board.thickness_mm,),
-    }
-    if tracks:
-        figures["Narrowest track"] = (min(tracks),)
-    if drills:
-        figures["Smallest drill"] = (min(drills),)
-    finish, flexible = read.of.finish, read.flexible
-    if not flexible:
-        figures["Thickness"] += (thickness_off_mm(read.board.thickness_mm),)
-    copper_um = 1000 * flexible.copper_mm if flexible else finish.copper_um
-    figures["Copper"] = (copper_um,)
-    lines: dict[str, str] = dict(re.findall(r"^(.+?): (.+)$", note, re.MULTILINE))
-    for name, wanted in figures.items():
-        stated = [float(figure) for figure in re.findall(r"[\d.]+", lines.get(name, ""))]
-        if len(stated) != len(wanted) or not np.allclose(stated, wanted, atol=SIZE_MM):
-            yield name
-    if finish.mask not in lines.get("Solder mask", lines.get("Coverlay", "")):
-        yield "colour of the mask"
-    for name, word in (("Surface", finish.surface), ("Silkscreen", "white")):
-        if not re.fullmatch(rf"{re.escape(word)}(,.*)?", lines.get(name, "")):
-            yield name
 
 
 def _unstopped(read: ReadBoard, finger: Finger, files: Files) -> Iterator[str]:

@@ -2,13 +2,16 @@
 
 import math
 import re
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.places import files_in
+from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.design.making import Filament
 from lumitip_fab.design.mould import printed_times
+from lumitip_fab.design.print_time import BRIM_MM, FIRST_LAYER_MM_S, OUTER_SHARE, PERIMETERS
 
 READS = ("print/*",)
 _NOTE = "print/printing.md"
@@ -37,6 +40,25 @@ _WIDTHS = (
     "solid_infill_extrusion_width",
     "top_infill_extrusion_width",
 )
+_FULL_SPEEDS = ("perimeter_speed", "infill_speed", "solid_infill_speed")
+_OUTER_SPEEDS = ("external_perimeter_speed", "top_solid_infill_speed", "bridge_speed")
+_ALWAYS = {
+    "avoid_crossing_perimeters": "1",
+    "bottom_solid_layers": "5",
+    "brim_type": "outer_only",
+    "elefant_foot_compensation": "0.1",
+    "filament_diameter": "1.75",
+    "fill_density": "100%",
+    "fill_pattern": "rectilinear",
+    "gcode_flavor": "marlin",
+    "perimeter_generator": "arachne",  # walls and wedges are as thin as one or two lines
+    "printer_technology": "FFF",
+    "seam_position": "rear",
+    "skirts": "0",
+    "support_material": "0",
+    "top_solid_layers": "5",
+}
+"""Settings of every design."""
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -45,6 +67,9 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         yield _settings(outputs, design, filament)
     yield _mould_layers(outputs, design)
     yield _parts(outputs, design)
+    wanted = {_NOTE, *(filament.file for filament in design.slicing.filaments)}
+    others = sorted({f"print/{name}" for name in files_in(outputs / "print")} - wanted)
+    yield count("printing.files", "print", others, "files that no filament of the design has")
 
 
 def _mould_layers(outputs: Path, design: Design) -> Measurement:
@@ -52,7 +77,7 @@ def _mould_layers(outputs: Path, design: Design) -> Measurement:
     rounding there makes the silicone thinner or thicker."""
     file = design.slicing.mould.file
     try:
-        layer_mm = float(_read(outputs / file)["layer_height"])
+        layer_mm = float(dict(_read(outputs / file))["layer_height"])
         if not _LEAST_LAYER_MM <= layer_mm < math.inf:
             raise ValueError(f"layer_height = {layer_mm:g}")
     except (OSError, KeyError, ValueError) as problem:
@@ -65,47 +90,53 @@ def _mould_layers(outputs: Path, design: Design) -> Measurement:
     return Measurement("printing.mould_layers", file, off_mm, 0, most_mm, "mm", note)
 
 
-def _read(path: Path) -> dict[str, str]:
+def _read(path: Path) -> list[tuple[str, str]]:
+    """Key and value of each line."""
     lines = path.read_text(encoding="utf-8").splitlines()
-    return {key.strip(): value.strip() for key, _, value in (n.partition("=") for n in lines)}
+    return [(key.strip(), value.strip()) for key, _, value in (n.partition("=") for n in lines)]
 
 
 def _settings(outputs: Path, design: Design, filament: Filament) -> Measurement:
+    """Every line of a file: the slicer takes its own value for what is missing."""
     try:
         settings = _read(outputs / filament.file)
     except (OSError, UnicodeDecodeError) as problem:
         return unreadable("printing.settings", filament.file, str(problem))
-    wrong = [key for key, value in _wanted(design, filament).items() if settings.get(key) != value]
-    note = f"other than printer and filament say: {', '.join(wrong) or 'none'}"
-    return Measurement(
-        "printing.settings", filament.file, float(len(wrong)), 0, 0, "settings", note
-    )
+    wrong = set(settings) ^ set(_wanted(design, filament).items())
+    twice = {key for key, lines in Counter(key for key, _ in settings).items() if lines > 1}
+    names = sorted(twice | {key for key, _ in wrong})
+    return count("printing.settings", filament.file, names, "settings other than the design's")
 
 
 def _wanted(design: Design, filament: Filament) -> dict[str, str]:
-    printing = design.printing
+    printing, speed = design.printing, filament.speed_mm_s
     x, y, z = (f"{value:g}" for value in printing.bed_mm)
     least, most = filament.fan_percent
     return {
+        **_ALWAYS,
         "layer_height": f"{filament.layer_mm:g}",
         "first_layer_height": f"{filament.layer_mm:g}",
         **dict.fromkeys(_WIDTHS, f"{printing.line_mm:g}"),
-        "perimeter_generator": "arachne",  # walls and wedges are as thin as one or two lines
+        "perimeters": f"{PERIMETERS}",
+        "brim_width": "0" if filament == design.slicing.sheet else f"{BRIM_MM:g}",
         "nozzle_diameter": f"{design.slicing.nozzle_mm:g}",
         "bed_shape": f"0x0,{x}x0,{x}x{y},0x{y}",
         "max_print_height": z,
-        "support_material": "0",
-        "fill_density": "100%",
+        "filament_settings_id": filament.name,
         "filament_density": f"{filament.density_g_ml:g}",
         "filament_max_volumetric_speed": f"{filament.max_flow_mm3_s:g}",
         "filament_type": filament.kind,
-        "filament_diameter": "1.75",
         "temperature": str(filament.nozzle_c),
+        "first_layer_temperature": str(filament.first_nozzle_c),
         "bed_temperature": str(filament.bed_c),
         "first_layer_bed_temperature": str(filament.bed_c),
-        "perimeter_speed": f"{filament.speed_mm_s:g}",
+        **dict.fromkeys(_FULL_SPEEDS, f"{speed:g}"),
+        **dict.fromkeys(_OUTER_SPEEDS, f"{OUTER_SHARE * speed:g}"),
+        "first_layer_speed": f"{min(FIRST_LAYER_MM_S, speed):g}",
+        "fan_always_on": str(int(least > 0)),
         "min_fan_speed": str(least),
         "max_fan_speed": str(most),
+        "bridge_fan_speed": str(most),
         "retract_length": f"{filament.retract_mm:g}",
     }
 

@@ -1,6 +1,8 @@
-"""Rules of a KiCad project by which its own checks would pass what the design forbids."""
+"""Rules of a KiCad project by which its own checks would pass what the design forbids, or find
+faults where there are none."""
 
 import json
+import math
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,32 +19,48 @@ _SHEET_ERRORS = frozenset(
     | {"lib_symbol_mismatch", "multiple_net_names", "pin_to_pin", "unconnected_wire_endpoint"}
 )
 """Faults of a schematic that KiCad by itself only warns of."""
+_DRAWN = {
+    "max_error": 0.005,
+    "min_silk_clearance": 0.0,
+    "min_text_height": 0.6,
+    "min_text_thickness": 0.1,
+    "use_height_for_length_calcs": 1.0,
+}
+"""Rules of round copper, print and lengths, the same for every design."""
+_OF_A_CLASS = frozenset(
+    {"name", "nets", "clearance", "track_width", "via_diameter", "via_drill"}
+    | {"microvia_diameter", "microvia_drill", "bus_width", "wire_width", "line_style"}
+    | {"diff_pair_gap", "diff_pair_via_gap", "diff_pair_width", "pcb_color", "schematic_color"}
+)
 _SAME_MM = 1e-6
 
 
-def weaker_rules(folder: Path, design: Design) -> Iterator[str]:
-    """Rules and classes below the design's, supplies in a class of narrow tracks, and faults that
+def other_rules(folder: Path, design: Design) -> Iterator[str]:
+    """Rules and classes unlike the design's, supplies in a class of other tracks, and faults that
     are no errors or are left out."""
     record = json.loads((folder / f"{folder.name}.kicad_pro").read_text(encoding="utf-8"))
     settings, nets = record["board"]["design_settings"], record["net_settings"]
-    yield from _below("", settings["rules"], _least(design.rules))
+    yield from _unlike("", settings["rules"], _wanted(design.rules))
+    yield from sorted(settings["rules"].keys() - _wanted(design.rules))
     classes = {each["name"]: each for each in nets["classes"]}
-    for name, each in classes.items():
-        yield from _below(f"{name} ", each, _least_of_class(design.rules))
+    supplies = _supplies(folder.name, design)
     patterns = nets["netclass_patterns"]
     rows = Counter(entry["pattern"] for entry in patterns)
     yield from (f"{net} in two classes" for net, times in rows.items() if times > 1)
     yield from (f"{net} in another class" for net in nets.get("netclass_assignments") or {})
     of_net = {entry["pattern"]: entry["netclass"] for entry in patterns}
-    for net in sorted(_supplies(folder.name, design)):
-        wide = classes.get(of_net.get(net, ""), {"track_width": 0.0})
-        yield from _below(f"{net} ", wide, {"track_width": design.rules.supply_track_mm})
+    wide = {of_net.get(net, "") for net in supplies}
+    for name, each in classes.items():
+        yield from _unlike(f"{name} ", each, _wanted_of_class(design.rules, name in wide))
+        yield from (f"{name} {more}" for more in sorted(each.keys() - _OF_A_CLASS))
+    yield from (f"{net} in no class" for net in sorted(supplies) if of_net.get(net) not in classes)
     yield from _allowed(record, settings)
 
 
-def _least(rules: Rules) -> dict[str, float]:
-    """The least value of each rule of a project."""
+def _wanted(rules: Rules) -> dict[str, float]:
+    """The value of each rule of a project."""
     return {
+        **_DRAWN,
         "min_clearance": rules.copper_gap_mm,
         "min_track_width": rules.track_mm,
         "min_via_diameter": rules.via_mm,
@@ -55,19 +73,19 @@ def _least(rules: Rules) -> dict[str, float]:
     }
 
 
-def _least_of_class(rules: Rules) -> dict[str, float]:
+def _wanted_of_class(rules: Rules, supply: bool) -> dict[str, float]:
     return {
         "clearance": rules.copper_gap_mm,
-        "track_width": rules.track_mm,
+        "track_width": rules.supply_track_mm if supply else rules.track_mm,
         "via_diameter": rules.via_mm,
         "via_drill": rules.via_drill_mm,
     }
 
 
-def _below(of: str, values: dict[str, Any], least: dict[str, float]) -> Iterator[str]:
-    for name, wanted in least.items():
-        if not float(values[name]) >= wanted - _SAME_MM:
-            yield f"{of}{name} {values[name]}, not {wanted:g}"
+def _unlike(of: str, values: dict[str, Any], wanted: dict[str, float]) -> Iterator[str]:
+    for name, value in wanted.items():
+        if not abs(float(values.get(name, math.nan)) - value) <= _SAME_MM:
+            yield f"{of}{name} {values.get(name)}, not {value:g}"
 
 
 def _supplies(name: str, design: Design) -> set[str]:

@@ -1,16 +1,18 @@
 """The URDF of both fingers: tree, places when closed and open, masses, inertia, and what
 touches."""
 
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import trimesh
 
 from lumitip_fab.checks.colours import Colour, wrong_colours
 from lumitip_fab.checks.readers.solids import Vectors, moved
-from lumitip_fab.checks.readers.urdf import Link, Model, read_macros, read_urdf
+from lumitip_fab.checks.readers.urdf import Link, Model, read_macros, read_urdf, xml_text
 from lumitip_fab.checks.result import Measurement, Subject, count, unreadable
 from lumitip_fab.design import Design, Finger
 from lumitip_fab.errors import OutputError
@@ -42,8 +44,14 @@ INERTIA = 0.01  # of the largest moment
 REACH_MM = 0.02
 _SPEED_MM_S = 150.0  # the largest of the Robotiq 2F-85's data sheet; the design has no speed
 BULK = 1.6  # volume of what touches, of what is seen
-_MOUNT = "fixed; parent ${{parent}}; child ${{prefix}}{0}; insert_block origin"
-"""Joint of a macro: the user gives parent and place."""
+_MOUNT = """
+<joint xmlns:xacro="http://www.ros.org/wiki/xacro" name="{link}_mount" type="fixed">
+  <parent link="${{parent}}" /><child link="{link}" /><xacro:insert_block name="origin" />
+</joint>
+"""
+"""Joint of a macro: the user sets parent and place."""
+_USES = (("left/", "package://left/meshes"), ("b2_", "file:///b2"))
+"""Prefix and folder of meshes of two users: what is not theirs is a name written out."""
 _PARAMETERS = "parent prefix:=lumitip_ meshes:=meshes *origin"
 _SETTINGS = {"strippath": "false", "discardvisual": "false"}
 """Without these MuJoCo forgets folders and what is only looked at."""
@@ -227,20 +235,27 @@ def _outside(hull: Any, points_mm: Vectors) -> Vectors:
 
 
 def _macros(outputs: Path) -> Measurement:
+    """The macros as two users call them, against the links of the URDF with their names."""
+    wrong: set[str] = set()
     try:
-        macros = read_macros(outputs / _MACROS)
         model = read_urdf(outputs / _FILE)
+        for prefix, meshes in _USES:
+            found = Counter(read_macros(outputs / _MACROS, prefix, meshes))
+            wanted = Counter(_wanted(model, prefix, meshes))
+            wrong |= {name for name, _ in (found - wanted) + (wanted - found)}
     except OutputError as error:
         return unreadable("robot.macros", _MACROS, str(error))
-    wanted = {
-        f"lumitip_{f}": model.links[f"lumitip_{f}"].text
-        for f in _FINGERS
-        if f"lumitip_{f}" in model.links
-    }
-    wanted |= {f"lumitip_{f}_mount": _MOUNT.format(f) for f in _FINGERS}
-    wanted |= {"robot": "lumitip"} | {f"macro lumitip_{f}": _PARAMETERS for f in _FINGERS}
-    apart = sorted(name for name in {*wanted, *macros} if wanted.get(name) != macros.get(name))
-    return count("robot.macros", _MACROS, apart, "links and joints unlike the URDF's")
+    return count("robot.macros", _MACROS, sorted(wrong), "elements unlike the URDF's")
+
+
+def _wanted(model: Model, prefix: str, meshes: str) -> Iterator[tuple[str, str]]:
+    yield "robot", "lumitip"
+    for finger in _FINGERS:
+        link = f"{prefix}{finger}"
+        yield f"macro lumitip_{finger}", _PARAMETERS
+        yield f"{link}_mount", xml_text(ElementTree.fromstring(_MOUNT.format(link=link)))
+        if f"lumitip_{finger}" in model.links:
+            yield link, model.links[f"lumitip_{finger}"].renamed(prefix, meshes)
 
 
 def _about_x(angle_deg: float) -> Vectors:

@@ -225,6 +225,11 @@ class Filament:
     """The only part printed in such layers; empty for everything of this filament."""
 
     @property
+    def first_nozzle_c(self) -> int:
+        """Nozzle temperature of the first layer, which is to stick."""
+        return self.nozzle_c + 5
+
+    @property
     def file(self) -> str:
         """Path of its settings below the output folder."""
         name = f"{self.name} {self.part}".lower()

@@ -7,8 +7,6 @@ from lumitip_fab.design.print_time import BRIM_MM, FIRST_LAYER_MM_S, OUTER_SHARE
 from lumitip_fab.pipeline.artefact import Artefact
 from lumitip_fab.text import as_written, data_file, passage
 
-_FIRST_LAYER_C = 5
-
 
 def print_settings(design: Design) -> tuple[Artefact, ...]:
     """`print/*.ini` and `print/printing.md`."""
@@ -27,7 +25,6 @@ def _settings(filament: Filament, printing: Printing, slicing: Slicing) -> str:
         perimeters=PERIMETERS,
         brim_mm=0.0 if filament == slicing.sheet else BRIM_MM,
         filament=filament,
-        first_c=filament.nozzle_c + _FIRST_LAYER_C,
         fan=filament.fan_percent,
         fan_always=int(filament.fan_percent[0] > 0),
         outer_mm_s=OUTER_SHARE * speed,

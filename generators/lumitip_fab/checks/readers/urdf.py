@@ -1,6 +1,7 @@
 """`Model`: links, joints and meshes of a URDF file, read without any library of robots."""
 
 from collections.abc import Iterator
+from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -30,8 +31,17 @@ class Link:
     collisions: dict[str, Any]
     materials: dict[str, tuple[str, tuple[float, ...]]]
     """Name and colour of each visual's material, as a viewer takes them; of those that have one."""
-    text: str
-    """Its XML, names without their prefix and files without their folder."""
+    xml: Element
+
+    def renamed(self, prefix: str, meshes: str) -> str:
+        """Its `xml_text` with another prefix of names and another folder of meshes."""
+        copy = deepcopy(self.xml)
+        for element in copy.iter():
+            if element.tag in {"link", "material"}:
+                element.set("name", _replaced(element.get("name", ""), "lumitip_", prefix))
+            elif element.tag == "mesh":
+                element.set("filename", _replaced(element.get("filename", ""), "meshes", meshes))
+        return xml_text(copy)
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,29 +98,36 @@ def read_urdf(path: Path) -> Model:
     return Model(root.get("name", ""), settings, {link.name: link for link in links}, joints)
 
 
-def read_macros(path: Path) -> dict[str, str]:
-    """Robot, macros, links and joints of a xacro file, by name: macros by their parameters, links
-    in the form of `Link.text`, joints as their type and what is in them, one after the other.
+def read_macros(path: Path, prefix: str, meshes: str) -> list[tuple[str, str]]:
+    """Name and text of the robot, of each macro and of each element in one, and of anything else
+    in a xacro file: macros by their parameters, elements in the form of `xml_text`, the macros'
+    `prefix` and `meshes` replaced as xacro would.
 
     Raises:
         OutputError: if the file cannot be read.
     """
     try:
-        root = ElementTree.fromstring(path.read_bytes())
-    except (OSError, ElementTree.ParseError) as error:
+        text = path.read_text(encoding="utf-8")
+        text = text.replace("${prefix}", prefix).replace("${meshes}", meshes)
+        root = ElementTree.fromstring(text)
+    except (OSError, ValueError, ElementTree.ParseError) as error:
         raise OutputError(f"cannot be read: {error}") from error
-    found = {"robot": str(root.get("name"))}
-    found |= {f"macro {e.get('name')}": str(e.get("params")) for e in root.findall(_MACRO)}
-    found |= {str(e.get("name")): _text(e) for e in root.findall(".//link")}
-    found |= {str(e.get("name")): _inside(e) for e in root.findall(".//joint")}
-    return {name.replace("${prefix}", "lumitip_"): text for name, text in found.items()}
+    found = [("robot", str(root.get("name")))]
+    for element in root:
+        if element.tag == _MACRO:
+            found.append((f"macro {element.get('name')}", str(element.get("params"))))
+        inside = element if element.tag == _MACRO else [element]
+        found += [(str(e.get("name", e.tag)), xml_text(e)) for e in inside]
+    return found
 
 
-def _inside(joint: Element) -> str:
-    """Type of a joint, then tag and values of each element in it; without namespaces, whose names
-    in a text depend on what else ran in this process."""
-    inside = [(e.tag.rpartition("}")[2], *e.attrib.values()) for e in joint]
-    return "; ".join([str(joint.get("type")), *(" ".join(each) for each in inside)])
+def xml_text(element: Element) -> str:
+    """Tag, values and all that is in an element, the same however a file is written; tags with
+    their namespace in full, whose prefix depends on what else ran in this process."""
+    own = [element.tag, *(f"{key}={value!r}" for key, value in sorted(element.items()))]
+    inside = [(element.text or "").strip()]
+    inside += [f"{xml_text(each)}{(each.tail or '').strip()}" for each in element]
+    return f"<{' '.join(own)}>{''.join(inside)}</>"
 
 
 def _link(element: Element, folder: Path) -> Link:
@@ -124,8 +141,13 @@ def _link(element: Element, folder: Path) -> Link:
         visuals=dict(_meshes(element, "visual", folder)),
         collisions=dict(_meshes(element, "collision", folder)),
         materials=dict(_materials(element)),
-        text=_text(element),
+        xml=element,
     )
+
+
+def _replaced(name: str, old: str, new: str) -> str:
+    """A name with another beginning; as it is where it begins otherwise."""
+    return new + name.removeprefix(old) if name.startswith(old) else name
 
 
 def _inertia(inertial: Element | None) -> Vectors:
@@ -214,10 +236,3 @@ def _attribute(element: Element | None, path: str, name: str) -> str:
     if found is None or name not in found.attrib:
         raise ValueError(f"no {path} with {name}")
     return found.attrib[name]
-
-
-def _text(element: Element) -> str:
-    text = ElementTree.canonicalize(ElementTree.tostring(element), strip_text=True)
-    for own in ("${prefix}", "lumitip_", "${meshes}/", "meshes/"):
-        text = text.replace(own, "")
-    return text
