@@ -47,7 +47,7 @@ def test_wires_too_thick_to_bend(cables: Path) -> None:
 @pytest.mark.parametrize("value", ["nan", "0", "-1", "inf"])
 def test_no_section(value: str, cables: Path) -> None:
     changed(cables, "W1", SECTION, value)
-    assert failing(cables, "bending") == {"radius"}
+    assert failing(cables, "bending") == {"readable"}
 
 
 @pytest.mark.parametrize("value", ["nan", "inf"])

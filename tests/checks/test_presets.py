@@ -52,6 +52,7 @@ def test_the_json_report_has_no_value_that_json_lacks(outputs: Path, tmp_path: P
     told = as_json(run_checks(tmp_path))
     assert None in [row["measured"] for row in told]
     of_files = [row for row in told if not str(row["subject"]).startswith("design.json")]
-    kinds = "manifest.kinds"  # nothing there is a pipe or a device
-    assert {row["check"] for row in of_files if row["passed"]} <= {kinds}
+    # No file there is a pipe or a device, and none is too many.
+    of_nothing = {"manifest.kinds", "printing.files"}
+    assert {row["check"] for row in of_files if row["passed"]} <= of_nothing
     assert json.loads(json.dumps(told, allow_nan=False)) == told

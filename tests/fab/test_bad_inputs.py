@@ -146,6 +146,7 @@ def test_the_pitch_that_the_published_detector_needs_is_accepted(project: Path) 
     text = (
         'extends = "presets/published.toml"\n[grid]\npitch_mm = {}\n[mask]\nhole_mm = 1.5\n'
         '[board]\ntip_margin_mm = 5.0\n[emitter]\nresistor_side = "front"\n'
+        "current_ma = 9.0\n"
         "[finger]\nrated_force_n = 20.0\n[backing]\nflare_depth_mm = 6.0\n"
     )
     file.write_text(text.format(needed[1]), encoding="utf-8")

@@ -72,7 +72,7 @@ class Writer:
         self.frames = 0
         """Frames written so far."""
         self._last_seq: int | None = None
-        self._offset_s: float | None = None
+        self._before: Frame | None = None
         self._set_s = 0.0
         try:
             self._file = self.path.open("xb")
@@ -137,11 +137,11 @@ class Writer:
         """The frame by the computer's clock as it was at the first one: it may be set since."""
         if isinstance(frame, RecordedFrame):
             return frame
-        offset_s = frame.t_wall - frame.t
-        step_s = 0.0 if self._offset_s is None else offset_s - self._offset_s
-        self._offset_s = offset_s
-        if abs(step_s) > _SET_S:
-            self._set_s += step_s
+        before, self._before = self._before, frame
+        if before is not None and frame.t > before.t:  # else its frames have no times of their own
+            step_s = (frame.t_wall - before.t_wall) - (frame.t - before.t)
+            if abs(step_s) > _SET_S:
+                self._set_s += step_s
         return replace(frame, t_wall=frame.t_wall - self._set_s) if self._set_s else frame
 
     def __repr__(self) -> str:
