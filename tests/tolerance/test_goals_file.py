@@ -50,6 +50,7 @@ def test_a_study_tries_the_gaps_and_cables_of_a_goals_file(
     assert found["pose_estimator"]["frames"] == 10 * 4 * (2 + 3)
 
 
+@pytest.mark.slow
 def test_cables_without_a_goal_are_not_tried(
     design_dir: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -96,6 +97,7 @@ def test_a_cable_of_any_diameter_is_found_on_a_finger_that_is_built_as_drawn(
     assert found[1, 0, 4] == 0.0
 
 
+@pytest.mark.slow
 def test_edges_without_a_goal_are_not_tried(
     design_dir: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
