@@ -17,9 +17,10 @@ from lumitip_fab.config.load import load
 from lumitip_fab.derive import resolve
 from lumitip_fab.derive.making.tolerances import spreads
 from lumitip_fab.tolerance.bench import COLUMNS, bench
+from lumitip_fab.tolerance.cores import on_cores
 from lumitip_fab.tolerance.draws import draw
 from lumitip_fab.tolerance.options import Options
-from lumitip_fab.tolerance.study import cases_of, on_cores
+from lumitip_fab.tolerance.study import cases_of
 
 FINGERS_A_MINUTE = 500
 CORES = 2

@@ -1,4 +1,4 @@
-"""What the pages on ROS 2 say of the xacro macros, by xacro itself."""
+"""The pages on ROS 2: their calls of the xacro macros, tried with xacro itself."""
 
 import re
 from pathlib import Path

@@ -53,8 +53,8 @@ def test_an_estimate_follows_a_gross_error_to_its_limit(tried: Bench) -> None:
 @pytest.mark.slow
 def test_self_calibration_finds_what_learning_finds(design: Resolved, tried: Bench) -> None:
     layout, fingers = design.design.layout, drawn(design, 3, 8)
-    frames = tried.frames(fingers, tried.use)["use"].tared
-    found = tried.estimates(tried.use["use"]).learned(frames, tried.use["use"])
+    frames = tried.frames(fingers, {"use": tried.use})["use"].tared
+    found = tried.estimates(tried.use).learned(frames, tried.use)
     model = Model.from_layout(layout)
     for number, values in enumerate(frames):
         learned = learn(layout, values, "edge", most_frames=len(values))
@@ -74,8 +74,8 @@ def test_self_calibration_lowers_the_misfit_of_an_uneven_finger(
     noise = 0.01  # of cables, which the tare alone leaves within 0.03 mm of their places
     assert np.all(learned.mean(axis=0) < 0.9 * tared.mean(axis=0) + noise)
     assert learned.sum() < 0.75 * tared.sum()
-    use = tried.use["use"]
-    known = tried.estimates(use).learned(tried.frames(uneven, tried.use)["use"].tared, use)
+    frames = tried.frames(uneven, {"use": tried.use})["use"].tared
+    known = tried.estimates(tried.use).learned(frames, tried.use)
     off = known.gains / known.gains.mean(axis=1, keepdims=True) - 1.0 - gains
     assert np.sqrt(np.mean(off**2)) < 0.05
     assert np.allclose(known.drift[:, 0] * GAP_SD_MM, 0.5, atol=0.25)

@@ -12,6 +12,7 @@ from lumitip_fab.derive.auto.resolve import Resolved
 from lumitip_fab.derive.making.tolerances import fingerprint, known_mask_shift, spreads
 from lumitip_fab.design.making import MaskShift
 from lumitip_fab.docs.wrapping import wrapping_steps
+from lumitip_fab.tolerance.cores import on_cores
 from lumitip_fab.tolerance.draws import FACTORS, Draws, directions, draw
 from lumitip_fab.tolerance.options import GOOD_PERCENT, Goals, Grasp, Options
 from lumitip_fab.tolerance.report import mask_line
@@ -20,7 +21,6 @@ from lumitip_fab.tolerance.study import (
     MOST_SHIFT_MM,
     cases_of,
     mask_allowance,
-    on_cores,
     shifted_good,
 )
 

@@ -11,6 +11,7 @@ from lumitip_fab.checks.board_read import ReadBoard
 from lumitip_fab.checks.panel_read import PanelBoard
 from lumitip_fab.design import Fab, Flexible
 from lumitip_fab.design.boards import thickness_off_mm
+from lumitip_fab.text import passage
 
 SIZE_MM = 0.006
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
@@ -19,15 +20,8 @@ _REFS = rf"{_REF}(?:, {_REF})*"
 _OTHER = {"anode": "cathode", "cathode": "anode", "collector": "emitter", "emitter": "collector"}
 _SYMMETRIC = ("R", "RN", "C")
 """Letters of parts that have no polarity."""
-_MAYBE = (
-    rf"ON THE BACK: {_REFS}\. Everything else is on the front\.",
-    rf"NOT MOUNTED BY YOU: {_REF} \(.+?\)(?:, {_REF} \(.+?\))*\. The customer solders it on by "
-    r"hand; it is in neither table\. Leave its holes open\.",
-    rf"ROTATION ASSUMED: {_REFS}\. Compare pad 1 of each with the mark on the part before "
-    r"placing\.",
-    r"Without a number of the distributor in the bill of materials: .+\. Choose them by hand\.",
-)
-"""Lines of which other checks know which parts they name, if there are any."""
+_TEXTS = "boards/fab/notes.txt"
+"""Wording that both notes share with whoever writes them; the figures in it come from the board."""
 _ROW = re.compile(rf"({_REF})  [-a-z\d. ]+")
 
 
@@ -80,32 +74,10 @@ def _header(read: ReadBoard, caption: str) -> str:
 
 def _panel(read: PanelBoard) -> Iterator[str]:
     panel, rules = read.panel, read.panel.rules
-    yield (
-        f"Panel: {len(panel.copies)} boards, {panel.columns} x {panel.rows}, as the customer has "
-        "drawn it; deliver it whole"
+    text = passage(_TEXTS, "panel").format(
+        panel=panel, rules=rules, copies=len(panel.copies), radius_mm=rules.gap_mm / 2
     )
-    yield f"Rails: {panel.rail_mm:g} mm, left and right; bars as wide join them"
-    yield (
-        f"Gaps: routed, {rules.gap_mm:g} mm and more, corners with a radius of "
-        f"{rules.gap_mm / 2:g} mm"
-    )
-    yield (
-        f"Mouse bites: {rules.bites} unplated holes of {rules.bite_mm:g} mm at each tab, a third "
-        "of each within the board"
-    )
-    yield f"Tooling holes: 4 of {rules.tooling_mm:g} mm, unplated"
-    yield (
-        f"Fiducials: {rules.fiducial_mm:g} mm on the rails, the mask open for "
-        f"{rules.fiducial_opening_mm:g} mm"
-    )
-    yield (
-        "The last number of a part is that of its board: D1_2 is D1 of board 2, counted row by "
-        "row from the lower left."
-    )
-    yield (
-        "Keep the rails. After breaking the boards out, file what is left of the tabs flush with "
-        "the edge."
-    )
+    yield from filter(None, text.splitlines())
 
 
 def other_lines(read: ReadBoard, fab: Fab, note: str, stiffener: str) -> Iterator[str]:
@@ -126,12 +98,24 @@ def other_lines(read: ReadBoard, fab: Fab, note: str, stiffener: str) -> Iterato
     others = Counter(line for line in lines if not _ROW.fullmatch(line))
     wanted = Counter(_assembly(read, fab, stiffener))
     yield from (f"no {line:.40}" for line in wanted - others)
-    used: set[str] = set()
+    maybe, used = _maybe(), set()
     for line in (others - wanted).elements():
-        pattern = next((p for p in _MAYBE if re.fullmatch(p, line)), "")
+        pattern = next((p for p in maybe if re.fullmatch(p, line)), "")
         if not pattern or pattern in used:
             yield f"{line:.40}"
         used.add(pattern)
+
+
+def _maybe() -> tuple[str, ...]:
+    """Patterns of lines of which other checks know which parts they name, if there are any."""
+    by_hand, turned = (re.escape(passage(_TEXTS, name)) for name in ("by_hand", "turned"))
+    bought = rf"{_REF} \(.+?\)(?:, {_REF} \(.+?\))*"
+    return (
+        rf"ON THE BACK: {_REFS}\. Everything else is on the front\.",
+        by_hand.replace(re.escape("{parts}"), bought),
+        turned.replace(re.escape("{refs}"), _REFS),
+        r"Without a number of the distributor in the bill of materials: .+\. Choose them by hand\.",
+    )
 
 
 def _assembly(read: ReadBoard, fab: Fab, stiffener: str) -> Iterator[str]:
@@ -150,45 +134,24 @@ def _assembly(read: ReadBoard, fab: Fab, stiffener: str) -> Iterator[str]:
 
 
 def _flexible(flexible: Flexible, stiffener: str) -> Iterator[str]:
-    stiff, total_mm = flexible.stiffener, flexible.core_mm
-    total_mm += 2 * (flexible.copper_mm + flexible.coverlay_mm)
-    yield (
-        f"FLEXIBLE BOARD, {total_mm:.3g} mm thick in all: polyimide {flexible.core_mm:.3g} mm, "
-        f"copper {flexible.copper_mm:g} mm on both sides, each under a coverlay of "
-        f"{flexible.coverlay_mm:g} mm. The layers of solder mask are the coverlays' openings."
+    total_mm = flexible.core_mm + 2 * (flexible.copper_mm + flexible.coverlay_mm)
+    text = passage(_TEXTS, "flexible").format(
+        flexible=flexible, total_mm=total_mm, stiff=flexible.stiffener, outline=stiffener
     )
-    yield (
-        f"Stiffener of polyimide, {flexible.stiffener_mm:g} mm, on the back, in mm as in the "
-        f"Gerber files: x {stiff.x_min_mm:.3f} to {stiff.x_max_mm:.3f}, y {stiff.y_min_mm:.3f} to "
-        f"{stiff.y_max_mm:.3f}; with the board's plated holes in it, 0.3 mm wider. Its outline is "
-        f"the drawing {stiffener}, of no copper."
-    )
-    yield (
-        f"It bends where y is above {flexible.bend.y_min_mm:.3f}: there are no vias, and nothing "
-        "stiff may be added."
-    )
+    yield from filter(None, text.splitlines())
 
 
 def _polarity(read: ReadBoard, letter: str) -> Iterator[str]:
     """The mark of the parts at the cells, the dots of chips, and what may be turned."""
     assert read.finger
     chip = read.design.packages.at_cells(read.finger)
-    one, other = chip.marked, _OTHER[chip.marked]
-    yield (
-        f"{_range(read, letter, chip.order_number)}, {chip.order_number} by {chip.manufacturer}: "
-        f"pad 1 is the {one}, pad 2 the {other}. On the silkscreen a bracket stands round pad 1, a "
-        "bar beyond it, or lines beside it."
-    )
-    known = {"datasheet": ", by its datasheet.", "measured": ": measured."}
-    if chip.mark_is_known:
-        yield f"The mark on the part itself shows its {one}{known[chip.mark_confidence]}"
-    else:
-        kind = "LED" if letter == "D" else "photodetector"
-        yield (
-            f"CHECK BEFORE PLACING: that the mark on the part itself shows its {one} is "
-            f"{chip.mark_confidence}, not read from a datasheet. Hold a part against its leaflet; "
-            f"if its mark shows the {other}, all {kind}s are turned by 180 degrees against the "
-            "placement list."
+    for name in ("pads", chip.mark_confidence if chip.mark_is_known else "assumed"):
+        yield passage(_TEXTS, name).format(
+            refs=_range(read, letter, chip.order_number),
+            part=chip.order_number,
+            kind="LED" if letter == "D" else "photodetector",
+            chip=chip,
+            other=_OTHER[chip.marked],
         )
     if not read.strings:
         yield f"{_range(read, 'U')}: lead 1 is at the dot, on the notch's side."

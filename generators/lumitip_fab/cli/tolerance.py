@@ -46,10 +46,11 @@ def _asked(options: argparse.Namespace) -> Options:
     own = {"position": options.position, "angle": options.angle, "gap": options.gap}
     written = {name: value for name, value in own.items() if value is not None}
     if options.goals is None:
-        gap = {"gap_mm": written.pop("gap")} if "gap" in written else {}
-        names = {"position": "position_mm", "angle": "angle_deg"}
-        goals = Goals.of_both(**{names[name]: value for name, value in written.items()})
-        return Options(goals, (Grasp(**gap),), **sizes)
+        usual = Goals.of_both()
+        goals = Goals.of_both(
+            written.get("position", usual.edge_mm), written.get("angle", usual.edge_deg)
+        )
+        return Options(goals, (Grasp(written.get("gap", Grasp.gap_mm)),), **sizes)
     if written:
         text = "is in the goals file too: --goals allows no other goal or gap. Remove one of them."
         raise InputError([Problem(f"--{name}", 0, "", text) for name in written])

@@ -26,7 +26,6 @@ from lumitip_fab.design.boards import (
     Finger,
     Flexible,
     Grid,
-    Packages,
     Part,
     Reading,
     Relief,
@@ -66,6 +65,7 @@ from lumitip_fab.design.mount import (
     Unsure,
 )
 from lumitip_fab.design.ordering import Bought, Fab, Pack, PartPrice, Purchase
+from lumitip_fab.design.packages import Packages
 from lumitip_fab.design.panel import Panel, PanelRules
 from lumitip_fab.design.pcb import (
     AuxiliaryBoard,

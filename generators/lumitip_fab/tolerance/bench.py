@@ -74,13 +74,13 @@ class Bench:
             for diameter_mm in case.cables_mm
         }
         """True poses."""
-        self.use = {"use": lines(case, "edge", LEARNING, POSE_SETS + number)}
+        self.use = lines(case, "edge", LEARNING, POSE_SETS + number)
         """Edges of self-calibration."""
         chance = generator(case.seed, Stream.NOISE, number)
         # The same noise for each of these fingers: what differs between them is how they are built.
         self._noise = {
             name: NOISE * chance.standard_normal((len(of.poses), len(case.layout)))
-            for name, of in (self.lines | self.use).items()
+            for name, of in self._lines(learning=True).items()
         }
 
     def estimates(self, of: Lines) -> Estimates:
@@ -97,11 +97,11 @@ class Bench:
             columns: some of `COLUMNS`.
         """
         learning = COLUMNS[2] in columns
-        frames = self.frames(draws, self.lines | (self.use if learning else {}))
-        (use,) = self.use.values()
-        nothing = known = self.estimates(use).nothing_known(len(draws["gap"]))
+        frames = self.frames(draws, self._lines(learning))
+        by_edges = self.estimates(self.use)
+        nothing = known = by_edges.nothing_known(len(draws["gap"]))
         if learning:
-            known = self.estimates(use).learned(frames["use"].tared, use)
+            known = by_edges.learned(frames["use"].tared, self.use)
         rows = []
         for column in columns:
             missed: dict[str, list[Floats]] = {kind: [] for kind in KINDS}
@@ -113,6 +113,10 @@ class Bench:
             every = np.concatenate([one for each in missed.values() for one in each], axis=1)
             rows.append(np.column_stack([*rms, gross(every).mean(axis=1)]))
         return np.array(rows)
+
+    def _lines(self, learning: bool) -> dict[str, Lines]:
+        """All lines by name, with those of self-calibration or without."""
+        return self.lines | ({"use": self.use} if learning else {})
 
     def compared(self, draws: Draws) -> dict[str, float]:
         """How the estimates compare with those of `PoseEstimator`, after a tare.

@@ -1,26 +1,23 @@
 """A study of tolerances: yield, error percentiles, sensitivities, and how far a mask may be off."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumitip.estimation import EstimationError
 from lumitip.grid import Floats
 from lumitip.layout import Layout
-from lumitip.tasks.bench import workers
 from lumitip.twin import Model, TwinError
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.messages import shown_path
 from lumitip_fab.derive.making.tolerances import MODEL_VERSION, fingerprint, spreads
-from lumitip_fab.errors import BuildError, InputError, Problem
+from lumitip_fab.errors import InputError, Problem
 from lumitip_fab.pipeline.fingerprint import made_with
-from lumitip_fab.tolerance.bench import COLUMNS, POSE_SETS, Case, bench, errors_over, forget
+from lumitip_fab.tolerance.bench import COLUMNS, POSE_SETS, Case, bench, forget
+from lumitip_fab.tolerance.cores import Errors, on_cores
 from lumitip_fab.tolerance.draws import FACTORS, Draws, directions, draw
 from lumitip_fab.tolerance.options import GOOD_PERCENT, MASK_FINGERS, Goals, Options
 from lumitip_fab.tolerance.sobol import indices, mixed
@@ -28,7 +25,6 @@ from lumitip_fab.tolerance.yields import Good, design_effect, good, interval, wo
 
 EVIDENCE = "simulated with our own model"
 _TARED = COLUMNS[1:2]
-_CHUNK = 20  # fingers
 _PERCENTILES = (50, 90, 95)  # of the errors
 LEAST_DRAWS = 64
 """With fewer draws there are no Sobol indices."""
@@ -40,15 +36,6 @@ _BEST = 3  # deviations of which the yield without them is computed
 _SEARCHED = 10  # fingers that the whole estimator is compared on
 _DIGITS = 4
 _LEAST_EXTENT_MM = 0.1
-
-
-Indices = NDArray[np.intp]
-Errors = Callable[[Draws, tuple[str, ...]], Floats]
-"""Errors of fingers as `Bench.errors` has them."""
-Part = tuple[tuple[Case, ...], int, Draws, tuple[str, ...], Indices]
-"""Fingers of one set of poses: its number, their deviations, the columns, and their places."""
-Run = Callable[[Callable[[Part], tuple[Indices, Floats]], list[Part]], Iterable[Any]]
-"""`map`, here or on several processes."""
 
 
 def study(
@@ -274,41 +261,6 @@ def _yield(found: Good) -> dict[str, Any]:
         "yield_95": [_rounded(end) for end in interval(found)],
         "design_effect": _rounded(design_effect(found)),
     }
-
-
-@contextmanager
-def on_cores(cases: tuple[Case, ...], cores: int | None) -> Iterator[Errors]:
-    """A function like `Bench.errors` on several processes; one finger after the other is tried at
-    the next of `POSE_SETS`."""
-    if cores == 1:
-        yield partial(_errors, cases, map)
-        return
-    with workers(cores or 1_000) as pool:
-        try:
-            yield partial(_errors, cases, pool.map)
-        except BrokenProcessPool as error:
-            raise BuildError("a worker was stopped from outside; run it again") from error
-
-
-def _errors(
-    cases: tuple[Case, ...], run: Run, drawn: Draws, columns: tuple[str, ...] = COLUMNS
-) -> Floats:
-    count = len(drawn["gap"])
-    parts: list[Part] = [
-        (cases, number, {name: rows[some] for name, rows in drawn.items()}, columns, some)
-        for number in range(min(POSE_SETS, count))
-        for all_ in [np.arange(number, count, POSE_SETS)]
-        for some in np.split(all_, range(_CHUNK, len(all_), _CHUNK))
-    ]
-    found = np.empty((len(columns), count, 5))
-    for some, errors in run(_errors_of, parts):
-        found[:, some] = errors
-    return found
-
-
-def _errors_of(part: Part) -> tuple[Indices, Floats]:
-    cases, number, drawn, columns, some = part
-    return some, errors_over(cases, number, drawn, columns)
 
 
 def _rounded(value: float) -> float:

@@ -211,13 +211,19 @@ def test_a_recording_plays_from_its_first_frame_once_the_node_is_active(
     assert skipped() < (1 if "speed=0" in speed else 10), "a busy computer may be behind"
 
 
-def test_a_slow_node_publishes_every_frame_of_a_recording_at_speed_0(
-    make_node: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def slow_node(make_node: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """An active node that is slower than a recording of 30 frames at speed 0."""
     node = make_node(url=f"replay://{recorded(tmp_path / 'a.mcap', 30)}?speed=0", estimate=False)
     node.on_configure(None)
     delay(node, monkeypatch, 0.02)
     node.on_activate(None)
+    return node
+
+
+def test_a_slow_node_publishes_every_frame_of_a_recording_at_speed_0(
+    make_node: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node = slow_node(make_node, tmp_path, monkeypatch)
     wait_until(lambda: len(node.published["~/values"]) == 30)
     assert diagnosed(node)[2]["not published"] == "0"
 
@@ -247,10 +253,7 @@ def test_a_recording_that_begins_anew_has_newer_stamps(make_node: Make, tmp_path
 def test_diagnostics_take_no_frame_from_a_recording_that_waits(
     make_node: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    node = make_node(url=f"replay://{recorded(tmp_path / 'a.mcap', 30)}?speed=0", estimate=False)
-    node.on_configure(None)
-    delay(node, monkeypatch, 0.02)
-    node.on_activate(None)
+    node = slow_node(make_node, tmp_path, monkeypatch)
     wait_until(lambda: len(node.published["~/values"]) >= 2)
     node.on_deactivate(None)
     for _ in range(30):

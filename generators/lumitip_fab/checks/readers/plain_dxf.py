@@ -7,7 +7,7 @@ import ezdxf
 
 _UP = (0.0, 0.0, 1.0)
 _KINDS = frozenset({"CIRCLE", "LINE", "LWPOLYLINE", "TEXT"})
-"""What the drawings are made of: an arc or a spline is none of their lines."""
+"""Entities of the drawings, all of whose lines are straight: no arc and no spline."""
 _SOLID = frozenset({"BYLAYER", "CONTINUOUS"})
 
 
