@@ -44,8 +44,8 @@ DAMAGES: list[tuple[str, Edit, str, set[str]]] = [
     (FLANGE, pads_exchanged, "wiring", {"pins"}),
     (LIST, replaced("flange,J4.3,", "flange,J4.9,"), "wiring", {"ends", "pins", "note", "diagram"}),
     (LIST, replaced("flange,J5.2,", "supply,1,"), "wiring", {"ends", "note", "diagram"}),
-    (BILL, replaced("MDBT50Q-1MV2", "MDBT50Q-P1MV2"), "bom", {"parts", "prices"}),
-    (BILL, replaced("\nboards,", f"\n{BOUGHT_TOO}\nboards,"), "bom", {"parts"}),
+    (BILL, replaced("MDBT50Q-1MV2", "MDBT50Q-P1MV2"), "bom", {"parts", "prices", "uses"}),
+    (BILL, replaced("\nboards,", f"\n{BOUGHT_TOO}\nboards,"), "bom", {"parts", "pieces"}),
 ]
 
 

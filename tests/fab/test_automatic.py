@@ -50,11 +50,12 @@ def test_usual_supplies_derive_with_and_without_the_flange(
 def _assert_rated(design: Design) -> None:
     """Resistors within 80 % of their rating at the worst case, by a calculation of our own: the
     current that the whole rest of the supply drives through the resistor alone, with every LED at
-    its lowest forward voltage, is above the current that flows."""
+    its lowest forward voltage, at 60 °C, is above the current that flows."""
     strings, wiring = design.electrical.strings, design.wiring
     assert strings.resistor_high_w <= 0.8 * strings.resistor_rated_w + 1e-12
     for ohm, cells, high in zip(wiring.resistor_ohm, wiring.strings, strings.high_ma, strict=True):
-        left = wiring.supply_v * 1.05 - len(cells) * (strings.forward_v - 0.1)
+        lowest_v = strings.forward_v - 0.1 - 35 * strings.forward_v_per_k
+        left = wiring.supply_v * 1.05 - len(cells) * lowest_v
         bound = 1000 * left / (0.99 * ohm)
         assert wiring.current_ma[0] < high <= bound
 
