@@ -83,7 +83,7 @@ def main(out: Path, integrated: Path, flex: Path) -> None:
     _board(flex / "boards/receiver/receiver_front.png", "flex_board.png")
     shutil.copy(out / "wiring/wiring.svg", IMAGES)
     shutil.copy(out / "assembly/system.svg", IMAGES)
-    _pages(pypdfium2.PdfDocument(out / "manual/manual.pdf"), (0, 11, 16))
+    _pages(pypdfium2.PdfDocument(out / "manual/manual.pdf"), ("Put the board in", "Clamp it, and"))
     draw_glb(out / "assembly/assembly.glb", IMAGES / "assembly.png")
 
 
@@ -105,9 +105,11 @@ def _board(picture: Path, name: str) -> None:
     Image.open(picture).quantize(_COLOURS).save(IMAGES / name, optimize=True)
 
 
-def _pages(document: pypdfium2.PdfDocument, numbers: tuple[int, ...]) -> None:
-    """Pages of the manual side by side."""
-    shown = [document[number].render(scale=0.75).to_pil() for number in numbers]
+def _pages(document: pypdfium2.PdfDocument, titles: tuple[str, ...]) -> None:
+    """The manual's first page and those of some steps, side by side."""
+    heads = [page.get_textpage().get_text_bounded()[:60] for page in document]
+    numbers = [next(n for n, head in enumerate(heads) if title in head) for title in titles]
+    shown = [document[number].render(scale=0.75).to_pil() for number in (0, *numbers)]
     width, height = shown[0].size
     together = Image.new("RGB", (len(shown) * (width + 8) - 8, height), "#c9d0d6")
     for place, page in enumerate(shown):

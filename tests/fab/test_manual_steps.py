@@ -5,13 +5,15 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from html import unescape
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.docs.casting import casting_steps
-from lumitip_fab.docs.mounting import mounting
+from lumitip_fab.docs.mounting import mounting_steps
 from manual_figures import read_pdf
 
 pytestmark = pytest.mark.slow
@@ -43,8 +45,9 @@ def test_the_force_that_a_finger_bears_is_named_before_the_gripper_closes(output
     strength = read_design(outputs / "design.json").strength
     text = (outputs / HTML).read_text(encoding="utf-8")
     assert f"<td>{strength.rated_force_n:g} N</td>" in text[: text.index("<h2>1. Parts</h2>")]
-    mount = chapter(outputs, "Mount")
-    mount = " ".join(mount.split())
+    mount = " ".join(
+        (chapter(outputs, "Mount the controller") + chapter(outputs, "Mount the fingers")).split()
+    )
     limit = mount.index(f"Limit the force of the gripper to {strength.rated_force_n:g} N")
     assert f"up to {strength.gripper_n:g} N, which can break a finger" in mount
     assert limit < mount.index("screw each finger on") < mount.index("open and close the gripper")
@@ -79,7 +82,7 @@ def plain(folder: Path) -> str:
 
 def test_heat_and_spare_parts_are_named_where_boards_are_made(outputs: Path) -> None:
     design = read_design(outputs / "design.json")
-    solder, boards = design.heat_steps["solder"], " ".join(chapter(outputs, "Boards").split())
+    solder, boards = design.heat_steps["solder"], " ".join(_boards(outputs).split())
     joint, limit = f"{solder.temperature_c:g} °C", f"{solder.limit_c:g} °C"
     assert f"Joints reach {joint}, and the board of FR-4 bears {limit}" in boards
     cells = sum(part.kind == "led" for part in design.emitter.parts)
@@ -87,7 +90,7 @@ def test_heat_and_spare_parts_are_named_where_boards_are_made(outputs: Path) -> 
 
 
 def test_parts_without_a_number_are_named_with_what_to_do(outputs: Path) -> None:
-    boards = " ".join(chapter(outputs, "Boards").split())
+    boards = " ".join(_boards(outputs).split())
     without = set()
     for board in ("emitter", "receiver", "breakout", "flange"):
         path = outputs / f"boards/{board}/order/jlcpcb_{board}_bom.csv"
@@ -125,9 +128,11 @@ def test_the_windows_that_are_closed_are_those_of_the_finger_that_has_them(outpu
 def test_faces_that_lean_touch_near_the_tip_first(outputs: Path) -> None:
     design = read_design(outputs / "design.json")
     assert design.mount.tilt_deg > 0
-    assert "the faces touch near the tip first" in " ".join(chapter(outputs, "Mount").split())
+    assert "the faces touch near the tip first" in " ".join(
+        chapter(outputs, "Mount the fingers").split()
+    )
     upright = replace(design, mount=replace(design.mount, tilt_deg=0.0))
-    assert "both faces are parallel" in mounting(upright)
+    assert "both faces are parallel" in "".join(mounting_steps(upright))
 
 
 def test_how_long_the_silicone_is_worked_and_how_a_skin_comes_off(outputs: Path) -> None:
@@ -139,7 +144,7 @@ def test_how_long_the_silicone_is_worked_and_how_a_skin_comes_off(outputs: Path)
     assert "is in its data sheet" in step.text and " 0 min" not in step.text
     skin = " ".join(chapter(outputs, "What wears").split())
     assert f"Push the {len(design.keys)} plugs of silicone" in skin
-    flange = " ".join(chapter(outputs, "Flange").split())
+    flange = " ".join(chapter(outputs, "Put the flange in").split())
     assert f"Let the glue harden for {design.mould.glue_hard_h:g} h" in flange
 
 
@@ -153,8 +158,12 @@ def test_a_gripper_that_breaks_nothing_is_not_said_to(
 ) -> None:
     design = read_design(outputs / "design.json")
     other = replace(design, strength=replace(design.strength, gripper_n=gripper_n))
-    assert said in mounting(other)
-    assert "break a finger" not in mounting(other)
+    assert said in "".join(mounting_steps(other))
+    assert "break a finger" not in "".join(mounting_steps(other))
+
+
+def _boards(outputs: Path) -> str:
+    return chapter(outputs, "Order the boards") + chapter(outputs, "Solder the boards")
 
 
 def chapter(outputs: Path, title: str) -> str:
@@ -182,26 +191,32 @@ def test_flange_and_mounting_are_numbered_lists_from_the_robot_to_the_fingers(
     outputs: Path,
 ) -> None:
     orders = {
-        "Flange": [
-            "Choose the gripper's cable",
-            "Press the socket",
+        "Look at the coupling": [
             "tool output off",
             "Take the gripper off",
-            "Try the board on the bench",
-            "flange_upper",
-            "Put the flange",
+            "carry what the drawing",
         ],
-        "Mount": [
+        "Try the flange board": [
+            "Press the socket",
+            "spring contacts",
+            "Try the board on the bench",
+        ],
+        "Put the flange in": ["flange_upper", "Put the flange"],
+        "Mount the controller": [
             "stay off",
             "holder.3mf",
             "Connect the gripper",
             "plug the socket of W3",
             "activate the gripper",
+        ],
+        "Mount the fingers": [
             "along the outside of its lugs",
             "screw each finger",
             "open and close",
         ],
     }
+    titles = re.findall(r"<h2>\d+\. (.*?)</h2>", (outputs / HTML).read_text(encoding="utf-8"))
+    assert [title for title in titles if title in orders] == list(orders)
     for title, order in orders.items():
         (work,) = re.findall(r"<ol>(.*?)</ol>", chapter(outputs, title), re.DOTALL)
         assert sorted(order, key=work.index) == order
@@ -210,10 +225,9 @@ def test_flange_and_mounting_are_numbered_lists_from_the_robot_to_the_fingers(
 
 def test_the_gripper_s_bolts_have_a_standard_length(outputs: Path) -> None:
     (flange,) = read_design(outputs / "design.json").flanges
-    _, lengths = chapter(outputs, "Flange").split("Length of the flange bolts")
+    _, lengths = chapter(outputs, "Look at the coupling").split("Length of the flange bolts")
     cells = re.findall(r"<td[^>]*>([^<]*)</td>", lengths)
-    rows = [cells[at : at + 4] for at in range(0, len(cells), 4)]
-    assert len(rows) == 4
+    rows = [cells[at : at + 4] for at in range(0, 16, 4)]
     for own, least, ordered, deeper in rows:
         least_mm, length_mm = float(least.split()[0]), float(ordered.split()[-1])
         assert least_mm == pytest.approx(float(own.split()[0]) + flange.top_z_mm, abs=0.05)
@@ -225,7 +239,25 @@ def test_the_gripper_s_bolts_have_a_standard_length(outputs: Path) -> None:
 def test_protection_is_tested_before_the_wires_go_in(outputs: Path) -> None:
     sheets, _ = read_pdf(outputs / PDF)
     text = "".join(sheets)
-    at = [
-        text.rindex(w.replace(" ", "")) for w in ("no short.", "peaks of the supply.", "1. Measure")
-    ]
+    said = (
+        "no short.",
+        "Measure that no wire",
+        "Try the board on the bench",
+        "peaks of the supply.",
+    )
+    at = [text.rindex(words.replace(" ", "")) for words in said]
     assert at == sorted(at)
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_each_step_has_a_page(built: Callable[[str], Path], preset: str) -> None:
+    """But the lists of parts. Some short steps share one."""
+    sheets, _ = read_pdf(built(preset) / PDF)
+    titles = re.findall(r"<h2>(\d+\. .*?)</h2>", (built(preset) / HTML).read_text(encoding="utf-8"))
+    heads = [unescape(title).replace(" ", "") for title in titles]
+    assert len(heads) > 20
+    begins = [next(n for n, sheet in enumerate(sheets) if head in sheet) for head in heads]
+    for (this, begin), (after, next_one) in pairwise([*zip(heads, begins, strict=True)][1:]):
+        assert next_one == begin or sheets[next_one].startswith(after), this
+        assert next_one - begin <= 1, this
+    assert begins[-1] == len(sheets) - 1

@@ -11,9 +11,9 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.design.cabling import front_headers, plugged_headers
-from lumitip_fab.docs.bring_up import first_test
-from lumitip_fab.docs.flange import flange_step
-from lumitip_fab.docs.mounting import mounting
+from lumitip_fab.docs.bring_up import bring_up_steps
+from lumitip_fab.docs.flange import flange_steps, gripper_cable
+from lumitip_fab.docs.mounting import mounting_steps
 from lumitip_fab.docs.protection import protection_note
 from lumitip_fab.docs.spec import choice_rows, rows
 from lumitip_fab.docs.wiring import wiring_note
@@ -28,9 +28,14 @@ def written(inputs: dict[str, Input], vary: Any) -> Written:
 
 
 def steps(design: Design) -> str:
-    """Both steps, of the flange and of mounting."""
-    flanges = (flange_step(design, flange) for flange in design.flanges)
-    return words(" ".join([*flanges, mounting(design)]))
+    """The steps of flange and mounting, and what is said of the gripper's cable."""
+    return words(" ".join([*map(gripper_cable, [design] * len(design.flanges)), work(design)]))
+
+
+def work(design: Design) -> str:
+    """The steps of flange and mounting, with their lines."""
+    flanges = (step for flange in design.flanges for step in flange_steps(design, flange))
+    return "\n\n".join([*flanges, *mounting_steps(design)])
 
 
 def words(text: str) -> str:
@@ -40,7 +45,7 @@ def words(text: str) -> str:
 def test_the_gripper_gets_the_supply_before_the_fuse(written: Written) -> None:
     step = steps(written())
     assert "The robot's lines are on J2. Its 24 V are on J3.7 and J3.8, before the fuse" in step
-    work = ["Choose the gripper's cable", "wires in the same socket", "Take the gripper off"]
+    work = ["use the cable that its maker has", "Take the gripper off", "wires in the same socket"]
     work += ["Connect the gripper with its cable, and plug the socket of W3 in at J3"]
     assert sorted(work, key=step.index) == work
 
@@ -50,7 +55,7 @@ def test_each_contact_of_a_socket_has_what_it_carries_and_its_wire(written: Writ
         design = written({}, preset)
         board = next(b for b in design.auxiliary_boards if b.name == "flange")
         (flange,) = design.flanges
-        table = flange_step(design, flange).split("### Contacts of the sockets")[1]
+        table = "".join(flange_steps(design, flange)).split("### Contacts of the sockets")[1]
         rows = re.findall(r"^\| (J\d+) \| (.*?) \| (.*?) \| (.*?) \|$", table, re.MULTILINE)
         shown = {(ref, pin): net for ref, pins, net, _ in rows for pin in pins.split(", ")}
         headers = front_headers(board)
@@ -76,7 +81,7 @@ def test_the_gripper_s_own_cable_has_a_fuse_and_a_limit(written: Written) -> Non
 @pytest.mark.parametrize("preset", ["published", "flex", "integrated", "wsg50"])
 def test_the_way_of_each_cable_has_all_its_ties(written: Written, preset: str) -> None:
     design = written({}, preset)
-    table = mounting(design).split("### Ways of the cables")[1]
+    table = work(design).split("### Ways of the cables")[1]
     rows = re.findall(r"^\| (W\d): .*? \| (.*?) \| (.*?) \| (.*?) \|$", table, re.MULTILINE)
     assert [row[0] for row in rows] == [cable.name for cable in design.cabling.cables]
     places = [place for _, start, _, end in rows for place in f"{start}, {end}".split(", ")]
@@ -101,7 +106,7 @@ def test_the_way_of_each_cable_has_all_its_ties(written: Written, preset: str) -
 def test_ties_close_the_arms_from_outside(written: Written, preset: str, robot: str) -> None:
     design = written({}, preset)
     (holder,) = design.holders
-    step = mounting(design)
+    step = work(design)
     first, clipped, closed = (
         step.index(text)
         for text in ("tie through each lug outside the arms", "Clip the arms", "to a loop of some")
@@ -151,10 +156,11 @@ def test_a_socket_is_pressed_where_a_cable_is_plugged_in(
     written: Written, changes: dict[str, Any], preset: str, sockets: int
 ) -> None:
     design = written(changes, preset)
-    step, note = steps(design), wiring_note(design)
+    step = steps(design)
     assert step.count("Press the socket") == step.count("plug the socket") == sockets
     assert step.count("a small vice") == sockets
-    assert words(note).count("press the cover down") == sockets
+    own = step.count("To press a socket on")
+    assert step.count("press the cover down") == sockets + own
 
 
 def test_without_a_flange_nothing_is_said_of_it(written: Written) -> None:
@@ -164,9 +170,7 @@ def test_without_a_flange_nothing_is_said_of_it(written: Written) -> None:
 
 def test_wires_that_are_too_thick_go_to_a_flat_cable(written: Written) -> None:
     light = {"finger.rated_force_n": 30.0}  # the flare is that of thin wires, whose slot is narrow
-    thin, thick = (
-        words(wiring_note(written({"wiring.section_mm2": s} | light))) for s in (0.08, 0.2)
-    )
+    thin, thick = (steps(written({"wiring.section_mm2": s} | light)) for s in (0.08, 0.2))
     assert "at most 1.25 mm thick" in thin and "flat cable of 14 wires" not in thin
     assert "flat cable of 14 wires" in thick and "across the slot" not in thick
 
@@ -175,7 +179,7 @@ def test_wires_that_are_too_thick_go_to_a_flat_cable(written: Written) -> None:
 def test_points_of_the_wiring_note_stand_apart(written: Written, preset: str) -> None:
     note = wiring_note(written({}, preset))
     points = re.findall(r"^- ", note, re.MULTILINE)
-    assert len(points) >= 4
+    assert len(points) >= 3
     assert not re.search(r"\.- |\S- [A-Z]", note)
 
 
@@ -221,14 +225,14 @@ def test_the_flange_s_board_is_tried_before_it_meets_the_robot(
     text = words(steps(written({}, preset)))
     tried = text.index("with a limit of 100 mA, its plus on the test point 24V_IN")
     shown = "The meter shows 24 V at the test point 24V and 5 V at the test point 5V."
-    assert tried < text.index(shown + light) < text.index("The TVS diode D1 stays cold.")
+    assert tried < text.index(shown + light) < text.index("In its test it stays cold.")
     assert "a bench supply" in text[:tried]
     assert text.index("TVS diode") < text.index("measure in the contacts of J3: 5 V from")
 
 
 @pytest.mark.parametrize("preset", ["published", "integrated"])
 def test_firmware_and_program_are_named_with_their_place(preset: str, written: Written) -> None:
-    test = words(first_test(written({}, preset)))
+    test = words(" ".join(bring_up_steps(written({}, preset))))
     assert (
         "`firmware/firmware.ino` of the outputs" in test
         or "folder `firmware` of the outputs" in test
@@ -268,7 +272,8 @@ def test_firmware_and_program_are_named_with_their_place(preset: str, written: W
 def test_protection_is_said_where_a_design_has_it(
     preset: str, changes: dict[str, Any], said: list[str], unsaid: list[str], written: Written
 ) -> None:
-    note = words(protection_note(written(changes, preset)))
+    design = written(changes, preset)
+    note = words(" ".join(protection_note(board, design) for board in design.auxiliary_boards))
     assert [text for text in said if text not in note] == []
     assert [text for text in unsaid if text in note] == []
 

@@ -46,7 +46,7 @@ def test_each_wire_has_a_colour_of_the_set_or_a_mark(inputs: dict[str, Input], p
     pack = design.purchase.pack("stranded wire")
     assert pack and len(pack.colours) == 10 and "10 colours" in pack.pack
     note = " ".join(wiring_note(design).split())
-    marked = note.partition("at both ends: ")[2].partition(". -")[0]
+    marked = note.partition("at both ends: ")[2].partition(". ")[0]
     wires = [wire for cable in design.cabling.cables for wire in cable.wires]
     others = [wire.number for wire in wires if wire.colour not in pack.colours]
     assert [each.split()[0] for each in marked.split("; ") if each] == others

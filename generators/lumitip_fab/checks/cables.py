@@ -16,7 +16,7 @@ _NEAR_MM = 0.01
 _ROW = re.compile(
     r"^\| (W\S+) \| ([A-Z]+ [a-z ]+) \| (\S+) \| (\S+) \| (\S+) \| ([\d.]+|–) \|$", re.MULTILINE
 )
-_HEADING = re.compile(r"^## (W\d+): (\w+) to (\w+), ([\d.]+) mm of ([\d.]+) mm²$", re.MULTILINE)
+_HEADING = re.compile(r"^### (W\d+): (\w+) to (\w+), ([\d.]+) mm of ([\d.]+) mm²$", re.MULTILINE)
 
 
 @dataclass(frozen=True)

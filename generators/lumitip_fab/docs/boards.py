@@ -1,11 +1,12 @@
-"""The manual's step of the boards: ordering, polarity, panels, soldering, measuring."""
+"""The manual's steps of the boards: polarity and order; soldering and measuring."""
 
 from collections import Counter
+from collections.abc import Iterable, Iterator
 
-from lumitip_fab.design import Design, Finger, Packages
+from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Packages
 from lumitip_fab.design.boards import GLUE_FILM_MM, thickness_off_mm
 from lumitip_fab.docs.bill import TESTED
-from lumitip_fab.docs.protection import protection_note
+from lumitip_fab.docs.protection import has_own_step, protection_note
 from lumitip_fab.docs.wiring import listed
 from lumitip_fab.pipeline.artefact import Files
 from lumitip_fab.text import as_written, passage
@@ -15,55 +16,84 @@ PROUD_MM = 0.05
 _PROBE_V = 0.15  # less than at the working current: a diode test drives about 1 mA
 
 
-def boards(design: Design, files: Files) -> str:
-    """Ordering, panels, soldering, measuring."""
-    auxiliary = design.auxiliary_boards
-    names = ("emitter", "receiver", *(board.name for board in auxiliary))
-    behind = any(part.side == "back" for part in design.emitter.parts)
-    backs = ["emitter"] if behind else []
-    backs += [board.name for board in auxiliary if any(d.side == "back" for d in board.components)]
-    pictures = [
-        f"![The {name} board, {side}](boards/{name}/{name}_{side}.png)"
-        for side, shown in (("front", names), ("back", backs))
-        for name in shown
-        if files.like(f"boards/{name}/{name}_{side}.png")
-    ]
-    reflowed = _reflowed(design)
+def ordering(design: Design, files: Files) -> str:
+    """The step up to the order: polarity of the parts, panels, what the zips hold."""
+    names = ("emitter", "receiver", *(board.name for board in design.auxiliary_boards))
+    polarity = polarity_test(design.packages, design.fingers)
+    own = any(has_own_step(board, design) for board in design.auxiliary_boards)
     return _text(
-        "boards",
+        "boards_ordered",
+        tester="multimeter, sunlight or a halogen lamp, " * bool(polarity),
         names=listed(list(names)),
         panels=_panels(design),
+        polarity=polarity,
+        unplaced=_unplaced(files),
+        elsewhere=_text("shown_later") if own else "",
+        stopped=_text("stopped") * bool(polarity),
+    )
+
+
+def soldering(design: Design, files: Files) -> str:
+    """The step that solders and measures the boards."""
+    auxiliary = [board for board in design.auxiliary_boards if not has_own_step(board, design)]
+    sunk = design.stack.sunk
+    shown = [*_finger_faces(design), *(face for board in auxiliary for face in faces(board))]
+    behind = any(part.side == "back" for part in design.emitter.parts)
+    reflowed = _reflowed(design)
+    return _text(
+        "boards_soldered",
+        broken=_text("broken", board=design.board) + "\n" if design.panels else "",
         solder=design.heat_steps["solder"],
         reflowed=reflowed,
         hot_air=", hot air, flux" * bool(reflowed),
-        calipers=", calipers" * design.stack.sunk,
-        thick=_thick(design.stack.pcb_mm) if design.stack.sunk else "",
-        short=4 if design.stack.sunk else 3,
+        calipers=", calipers" * sunk,
+        thick=_thick(design.stack.pcb_mm) if sunk else "",
+        short=3 if sunk else 2,
+        protection="".join(protection_note(board, design) for board in auxiliary),
         breaking=", pliers, small files, safety glasses" * bool(design.panels),
-        polarity=polarity_test(design.packages, design.fingers),
-        protection=protection_note(design),
         led=design.packages.led,
         detector=design.packages.photodetector,
-        unplaced=_unplaced(files),
         last=", then the string resistors on the back of the emitter" if behind else "",
-        pictures="\n".join(pictures),
+        pictures=pictures(shown, files),
+    )
+
+
+def _finger_faces(design: Design) -> Iterator[tuple[str, str]]:
+    """Name and side of each face of the fingers' boards that has parts."""
+    for finger in design.fingers:
+        yield finger.name, "front"
+        if any(part.side == "back" for part in finger.parts):
+            yield finger.name, "back"
+
+
+def faces(board: AuxiliaryBoard) -> Iterator[tuple[str, str]]:
+    """Name and side of each face of a board that has parts, and of its front."""
+    yield board.name, "front"
+    if any(part.side == "back" for part in board.components):
+        yield board.name, "back"
+
+
+def pictures(shown: Iterable[tuple[str, str]], files: Files) -> str:
+    """Pictures of faces, by the board's name and the side, fronts first."""
+    return "\n".join(
+        f"![The {name} board, {side}](boards/{name}/{name}_{side}.png)"
+        for name, side in sorted(shown, key=lambda face: face[1] == "back")
+        if files.like(f"boards/{name}/{name}_{side}.png")
     )
 
 
 def _thick(pcb_mm: float) -> str:
     """How boards are measured that must not stand out of their pockets."""
     off_mm = thickness_off_mm(pcb_mm)
-    return (
-        _text(
-            "thick",
-            pcb_mm=pcb_mm,
-            low_mm=pcb_mm - off_mm,
-            high_mm=pcb_mm + off_mm,
-            most_mm=pcb_mm + PROUD_MM,
-            film_mm=GLUE_FILM_MM,
-        )
-        + "\n"
+    text = _text(
+        "thick",
+        pcb_mm=pcb_mm,
+        low_mm=pcb_mm - off_mm,
+        high_mm=pcb_mm + off_mm,
+        most_mm=pcb_mm + PROUD_MM,
+        film_mm=GLUE_FILM_MM,
     )
+    return f"{text}\n"
 
 
 def _unplaced(files: Files) -> str:
@@ -79,7 +109,7 @@ def _unplaced(files: Files) -> str:
         + f" ({row['value']})" * (row["value"] != row["part"])
         for row in rows
     )
-    return _text("unplaced", parts=as_written(listed(list(parts)))) + "\n" if parts else ""
+    return _text("unplaced", parts=as_written(listed(list(parts)))) if parts else ""
 
 
 def _panels(design: Design) -> str:
@@ -90,7 +120,7 @@ def _panels(design: Design) -> str:
         f"- `boards/{panel.name}/order/`: {len(panel.copies)} times {panel.board}"
         for panel in design.panels
     )
-    return _text("panels", listed=listed, board=design.board)
+    return _text("panels", listed=listed)
 
 
 def _reflowed(design: Design) -> str:

@@ -1,4 +1,4 @@
-"""The manual's first test: supply, program, and both boards face to face."""
+"""The manual's steps of bringing up: supply, firmware, program; then both boards face to face."""
 
 import math
 from collections.abc import Iterator
@@ -7,11 +7,12 @@ from lumitip_fab.design import Cabling, Design
 from lumitip_fab.text import passage
 
 
-def first_test(design: Design) -> str:
-    """The step, with the LEDs' current."""
+def bring_up_steps(design: Design) -> tuple[str, str]:
+    """The firmware loaded, with the LEDs' current; and the first test."""
     switched = design.wiring.emitter_pin is not None
-    return _text(
-        "tested",
+    loaded = _text(
+        "loaded",
+        soldered=", a soldering iron" * _has_module(design),
         loading=_loading(design) + "".join(_lights(design)),
         limit_ma=_limit_ma(design),
         tape=design.mould.tape,
@@ -20,6 +21,7 @@ def first_test(design: Design) -> str:
         lit="They are dark until the firmware runs, and draw" if switched else "They draw",
         current_ma=sum(design.wiring.current_ma),
     )
+    return loaded, _text("tested")
 
 
 def _poles(cabling: Cabling, net: str) -> str:
@@ -41,9 +43,13 @@ def _limit_ma(design: Design) -> float:
 
 def _loading(design: Design) -> str:
     """How the firmware comes onto the controller: a module has no bootloader yet."""
+    name = "bootloader" if _has_module(design) else "upload"
+    return _text(name, controller=design.controller.title)
+
+
+def _has_module(design: Design) -> bool:
     components = (device for board in design.auxiliary_boards for device in board.components)
-    module = any(d.kind == "module" for d in components)
-    return _text("bootloader" if module else "upload", controller=design.controller.title)
+    return any(device.kind == "module" for device in components)
 
 
 def _lights(design: Design) -> Iterator[str]:

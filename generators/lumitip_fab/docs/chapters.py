@@ -7,9 +7,9 @@ from itertools import count
 from typing import Any
 
 from lumitip_fab.design import Design
-from lumitip_fab.design.cabling import awg, supplied_headers
-from lumitip_fab.docs.boards import boards
-from lumitip_fab.docs.bring_up import first_test
+from lumitip_fab.design.cabling import supplied_headers
+from lumitip_fab.docs.boards import faces, ordering, pictures, soldering
+from lumitip_fab.docs.bring_up import bring_up_steps
 from lumitip_fab.docs.casting import (
     amounts_of_both,
     casting_steps,
@@ -17,15 +17,15 @@ from lumitip_fab.docs.casting import (
     silicone_mix,
     volume_ml,
 )
-from lumitip_fab.docs.flange import flange_step
+from lumitip_fab.docs.flange import flange_steps
 from lumitip_fab.docs.front import WARM_UP_MIN, front
 from lumitip_fab.docs.measuring import measuring
-from lumitip_fab.docs.mounting import mounting
+from lumitip_fab.docs.mounting import mounting_steps
 from lumitip_fab.docs.orders import amount, money
 from lumitip_fab.docs.page import html_page
+from lumitip_fab.docs.protection import has_own_step
 from lumitip_fab.docs.sheet import pdf_sheets
-from lumitip_fab.docs.spec_circuit import pulled_up
-from lumitip_fab.docs.wiring import listed
+from lumitip_fab.docs.wiring import listed, wiring_steps
 from lumitip_fab.docs.wrapping import mask_facts, wrapping_steps
 from lumitip_fab.pipeline.artefact import Artefact, Files
 from lumitip_fab.text import as_written, passage
@@ -44,17 +44,18 @@ def manual_text(design: Design, files: Files) -> str:
         front(design),
         _bought(design, files),
         measuring(design),
-        boards(design, files),
+        ordering(design, files),
+        soldering(design, files),
         _printed(design, files),
-        _wired(design, files),
-        first_test(design),
+        *(step.section() for step in wiring_steps(design)),
+        *bring_up_steps(design),
         *(
             step.section()
             for step in casting_steps(design, design.fingers, _amounts(design, files))
         ),
         *_masked(design, files),
-        *(flange_step(design, flange) for flange in design.flanges),
-        mounting(design),
+        *(step for f in design.flanges for step in flange_steps(design, f, _flange(design, files))),
+        *mounting_steps(design),
         _run(design),
         _kept(design),
     )
@@ -104,19 +105,6 @@ def _how_much(line: dict[str, Any]) -> str:
     return amount(line["quantity"]) + unit
 
 
-def _wired(design: Design, files: Files) -> str:
-    sections = sorted({cable.section_mm2 for cable in design.cabling.cables})
-    wires = [f"stranded wire of {mm2:g} mm² (AWG {awg(mm2)})" for mm2 in sections]
-    weak = f"{pins}.\n\n" if (pins := pulled_up(design.wiring)) else ""
-    return _text(
-        "wired",
-        wires=listed(wires),
-        ties=", cable ties" if design.mount.lugs or design.holders else "",
-        note=_included(files.text("wiring/cables.md")),
-        weak=weak,
-    )
-
-
 def _amounts(design: Design, files: Files) -> str:
     """Amounts to weigh for each finger."""
     mixes = {f.name: silicone_mix(volume_ml(f, files), design.mould) for f in design.fingers}
@@ -158,6 +146,12 @@ def _masked(design: Design, files: Files) -> Iterator[str]:
     both = _text("masks", pictures=pictures)
     yield replace(first, text=f"{both}\n\n{first.text}").section()
     yield from (step.section() for step in others)
+
+
+def _flange(design: Design, files: Files) -> str:
+    """Pictures of the flange's board, where it is shown in its own step."""
+    own = [board for board in design.auxiliary_boards if has_own_step(board, design)]
+    return pictures((face for board in own for face in faces(board)), files)
 
 
 def _run(design: Design) -> str:

@@ -1,4 +1,5 @@
-"""The manual's step of the flange: its board, its printed parts, its bolts, the gripper's cable."""
+"""The manual's steps of the flange: the coupling and its bolts, the board with the gripper's cable,
+the printed parts."""
 
 import re
 from collections.abc import Iterator
@@ -7,52 +8,74 @@ from lumitip_fab.design import AuxiliaryBoard, Design, Flange
 from lumitip_fab.design.cabling import INPUT_END, front_headers, gripper_headers, plugged_headers
 from lumitip_fab.design.electrical import Indicator
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
-from lumitip_fab.docs.protection import TVS
-from lumitip_fab.docs.wiring import SLOT_MM2, listed
+from lumitip_fab.docs.protection import TVS, has_own_step, protection_note
+from lumitip_fab.docs.steps import numbered
+from lumitip_fab.docs.wiring import SLOT_MM2, listed, pressed
 from lumitip_fab.text import as_written, passage
 
 _SUPPLY = re.compile(r"[\d.]+V")
 OWN_MM = (12, 16, 20, 25)
 """Lengths of a gripper's own bolts, as examples."""
-FLANGE_MIN = 60
-"""How long the work takes (assumed)."""
+BOARD_MIN, FLANGE_MIN = 30, 20
+"""How long the work on the board takes, and building it in (assumed)."""
 
 
-def flange_step(design: Design, flange: Flange) -> str:
-    """The step, its work numbered."""
-    work = "\n".join(f"{n}. {text}" for n, text in enumerate(_work(design, flange), 1))
-    return _text(
+def flange_steps(design: Design, flange: Flange, pictures: str = "") -> Iterator[str]:
+    """From the coupling on the robot to the supply that is measured.
+
+    Args:
+        design: with the flange.
+        flange: whose steps they are.
+        pictures: of its board, in Markdown, where no other step has them.
+    """
+    yield _text("coupling_step", work=numbered(_looked(design)), lengths=_lengths(flange))
+    board = _flange(design)
+    own = has_own_step(board, design)
+    yield _text(
+        "flange_board_step",
+        pictures=f"{pictures}\n\n" if pictures else "",
+        needs=", ".join(_needs(design)),
+        minutes=BOARD_MIN,
+        work=numbered(_boarded(design, flange)),
+        protection=protection_note(board, design) if own else "",
+        contacts=_contacts(design),
+    )
+    yield _text(
         "flange_step",
         flange=flange,
-        needs=", ".join(_needs(design)),
+        glue=design.strength.glue,
         minutes=FLANGE_MIN,
-        work=work,
-        contacts=_contacts(design),
-        lengths=_lengths(flange),
+        work=numbered(_built_in(design, flange)),
     )
 
 
+def _looked(design: Design) -> Iterator[str]:
+    """The gripper off, its bolts and the coupling's contacts measured."""
+    yield _text("switched_off")
+    yield _text("taken_off")
+    yield _text("confirmed", volts=_volts(_raw(design)))
+
+
 def _needs(design: Design) -> Iterator[str]:
-    """Tools, and what is used up."""
-    yield "the keys and screwdrivers, a soldering iron, solder, side cutters, safety glasses"
-    yield f"a multimeter, {design.strength.glue}, nitrile gloves"
-    yield "a bench supply"
+    """Tools for the board, and what is used up."""
+    yield "a soldering iron, solder, side cutters, safety glasses, a multimeter, a bench supply"
     if plugs(design):
         yield "a small vice"
 
 
-def _work(design: Design, flange: Flange) -> Iterator[str]:
-    """From the cable that is pressed on the bench to the supply that is measured."""
-    yield _chosen(design)
+def _boarded(design: Design, flange: Flange) -> Iterator[str]:
+    """Sockets on wires, spring contacts, and the board alone on a bench supply."""
     own = gripper_headers(design.auxiliary_boards)
     for header, cable in plugs(design):
         shared = _text("shared", header=header) if header in own else ""
-        yield _text("socketed", cable=cable, header=header, shared=shared)
-    yield _text("switched_off")
-    yield _text("taken_off")
-    yield _text("confirmed", volts=_volts(_raw(design)))
+        how = pressed(design.cabling)
+        yield _text("socketed", cable=cable, header=header, shared=shared, pressed=how)
     yield _text("contacts", flange=flange)
     yield _tried(design)
+
+
+def _built_in(design: Design, flange: Flange) -> Iterator[str]:
+    """From the board in its printed part to the supply that is measured."""
     hard_h = design.mould.glue_hard_h
     wait = f"for {hard_h:g} h" if hard_h else "for as long as its label says"
     yield _text("closed", flange=flange, glue=design.strength.glue, wait=wait)
@@ -65,8 +88,9 @@ def _tried(design: Design) -> str:
     raw, board = _raw(design), _flange(design)
     points = [f"{_volts(net)} at the test point {net}" for net in _outputs(design)]
     signs = "".join(_text("lit", lit=lit) for lit in _lights(design))
-    diodes = [part for part in board.components if part.kind == TVS]
-    signs += "".join(_text("cold", part=part) for part in diodes)
+    if not has_own_step(board, design):
+        diodes = [part for part in board.components if part.kind == TVS]
+        signs += "".join(_text("cold", part=part) for part in diodes)
     return _text("indicator", supply=_volts(raw), raw=raw, outputs=listed(points), signs=signs)
 
 
@@ -97,8 +121,8 @@ def _lights(design: Design) -> list[Indicator]:
     return [lit for lit in design.electrical.indicators if lit.board == "flange"]
 
 
-def _chosen(design: Design) -> str:
-    """The gripper's cable, and where its supply and lines are on the flange's board."""
+def gripper_cable(design: Design) -> str:
+    """The choice of the gripper's cable: where its supply and lines are on the flange's board."""
     board = _flange(design)
     headers = front_headers(board)
     raw = _raw(design)
@@ -106,7 +130,7 @@ def _chosen(design: Design) -> str:
     supply = _from_robot(design, pads) if pads else ""
     own = [part.ref for part in headers if {net for _, net in part.nets} - {*board.supplies}]
     lines = _text("lines", lines=listed(own)) if own else ""
-    return _text("chosen", supply=supply or _text("behind_fuse"), lines=lines)
+    return _text("gripper_cable", supply=supply or _text("behind_fuse"), lines=lines)
 
 
 def _from_robot(design: Design, pads: list[str]) -> str:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from lumitip_fab.design import Design, Flange, Unsure
+from lumitip_fab.docs.flange import gripper_cable
 from lumitip_fab.text import as_written, passage, table_of
 
 _GRIPPERS, _OTHERS = "grippers/texts.toml", "docs/measuring.toml"
@@ -24,6 +25,7 @@ def measuring(design: Design) -> str:
         title=as_written(mount.title),
         written=_text("measured_in", places=" or ".join(places)) if places else "",
         body=_text("measured_body") if _body(design) else "",
+        gripper_cable="".join(gripper_cable(design) for _ in design.flanges),
     )
 
 

@@ -1,43 +1,50 @@
-"""The manual's step of mounting: the controller's board and the fingers on the gripper."""
+"""The manual's steps of mounting: the controller's board on the gripper, and the fingers."""
 
 from collections.abc import Iterator
 
 from lumitip_fab.design import Design, Holder
 from lumitip_fab.docs.cable_ways import cable_ways
 from lumitip_fab.docs.flange import plugs
+from lumitip_fab.docs.steps import numbered
 from lumitip_fab.docs.wiring import listed
 from lumitip_fab.text import passage
 
+FINGERS_MIN = 20
+"""How long mounting the fingers takes (assumed)."""
 
-def mounting(design: Design) -> str:
-    """The step, its work numbered."""
-    work = "\n".join(f"{n}. {text}" for n, text in enumerate(_work(design), 1))
-    return _text(
+
+def mounting_steps(design: Design) -> Iterator[str]:
+    """The controller's board and the gripper, then the fingers."""
+    yield _text(
+        "gripper_step",
+        title="Mount the controller" if design.holders else "Try the gripper",
+        work=numbered(_gripper_work(design)),
+        needs=", ".join(["the keys and screwdrivers", *_ties(bool(design.holders))]),
+        minutes=10 + 15 * len(design.holders),
+        dead=_text("dead_behind" if design.flanges else "dead"),
+        slipping=_text("slipping") * bool(design.holders),
+    )
+    yield _text(
         "mounted",
-        work=work,
-        needs=", ".join(_needs(design)),
-        minutes=_minutes(design),
+        work=numbered(_finger_work(design)),
+        needs=", ".join(["the keys", *_ties(_tied(design))]),
+        minutes=FINGERS_MIN,
         ways=cable_ways(design),
         closed=_text("touch_first" if design.mount.tilt_deg else "parallel"),
-        signs=_text("flange_sign") if design.flanges else "",
     )
 
 
-def _needs(design: Design) -> Iterator[str]:
-    """Tools, and what is used up."""
-    yield "the keys and screwdrivers"
-    if design.mount.lugs or design.holders:
-        yield "cable ties"
-    yield "side cutters"
+def _ties(used: bool) -> list[str]:
+    return ["cable ties", "side cutters"] * used
 
 
-def _minutes(design: Design) -> int:
-    """How long the work takes (assumed)."""
-    return 20 + 15 * len(design.holders)
+def _tied(design: Design) -> bool:
+    """Whether cables are tied to lugs."""
+    return bool(design.mount.lugs) or any(holder.lugs for holder in design.holders)
 
 
-def _work(design: Design) -> Iterator[str]:
-    """From the robot to the fingers."""
+def _gripper_work(design: Design) -> Iterator[str]:
+    """The controller's board, the gripper's cable, and the gripper's first stroke."""
     mount = design.mount
     yield _text("still_off" if design.flanges else "switched_off")
     for holder in design.holders:
@@ -56,7 +63,12 @@ def _work(design: Design) -> Iterator[str]:
         feeds = bool(found) and design.feed is not None and not design.feed.diode
         yield _text("connected", sockets=sockets + _text("unplugged") * feeds)
     yield _text("activated", rated_n=design.strength.rated_force_n, greatest=_greatest(design))
-    if mount.lugs or any(holder.lugs for holder in design.holders):
+
+
+def _finger_work(design: Design) -> Iterator[str]:
+    """Ties, bolts, supply, and the first stroke with the fingers on."""
+    mount = design.mount
+    if _tied(design):
         yield _text("tied")
     yield _text("screwed_on", bolts=len(mount.bolt_u_mm), mount=mount)
     wires = [wire for cable in design.cabling.cables for wire in cable.wires]

@@ -12,12 +12,16 @@ ESD, TVS, FUSE, MOSFET = "esd diode", "tvs diode", "fuse", "transistor"
 SCHOTTKY = "schottky diode"
 
 
-def protection_note(design: Design) -> str:
-    """Paragraphs on ESD diodes with their resistors, on the TVS diode with its fuse, and on the
-    diode before the controller; empty without any."""
-    return "".join(
-        f"\n\n{text}" for board in design.auxiliary_boards for text in _of(board, design)
-    )
+def protection_note(board: AuxiliaryBoard, design: Design) -> str:
+    """Paragraphs on a board's ESD diodes with their resistors, on its TVS diode with its fuse, and
+    on the diode before the controller; empty without any."""
+    return "".join(f"\n\n{text}" for text in _of(board, design))
+
+
+def has_own_step(board: AuxiliaryBoard, design: Design) -> bool:
+    """Whether a board is shown and tested in a step of its own: the flange's, unless the wires of
+    the fingers end on it."""
+    return board.name == "flange" and len(design.auxiliary_boards) > 1
 
 
 def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
@@ -35,9 +39,7 @@ def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
         yield _text("protected_esd", board=board.name, diodes=_references(diodes), limited=limited)
     for part in kinds[TVS]:
         melts = "".join(_text("protected_fuse", fuse=fuse) for fuse in kinds[FUSE])
-        # The flange's board has a test of its own, after that of the fingers if they are not on it.
-        later = board.name == "flange" and len(design.auxiliary_boards) > 1
-        where = 'its test (step "Flange")' if later else "the first test"
+        where = "its test" if has_own_step(board, design) else "the first test"
         ends = "".join(
             _text("protected_reversed", part=mosfet, supply_v=design.wiring.supply_v)
             for mosfet in kinds[MOSFET]

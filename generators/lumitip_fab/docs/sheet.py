@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from functools import partial
 from html import escape
 from itertools import pairwise
+from typing import NamedTuple
 
 import PIL.Image
 from markdown_it.token import Token
@@ -37,12 +38,27 @@ _MOST_HIGH = 132 * mm  # of a drawing, which otherwise has its own size
 _WIDE, _WIDE_HIGH = 1.5, 170 * mm  # of the page: a drawing so wide has small words already
 _GAP = 6 * mm  # between pictures beside each other
 _PAIR_HIGH = 85 * mm
-_COLUMNS = ((1, 1), (2, 4), (3, 1000))
-"""How many pictures of a paragraph stand in a row, up to how many."""
-_SHARES = (1.0, 0.9, 0.8, 0.7)  # of a drawing, where that saves a page
+
+
+class _Layout(NamedTuple):
+    """Sizes of pictures, as shares, and how many of a paragraph stand in a row at most."""
+
+    drawing: float
+    pixels: float
+    row: int
+
+
+_LAYOUTS = tuple(
+    _Layout(*each)
+    for each in ((1.0, 1.0, 2), (0.9, 0.9, 2), (0.9, 0.9, 4), (0.8, 0.7, 4), (0.7, 0.5, 4))
+)
+"""From the largest to the smallest, which is taken where that saves a page: a picture of pixels has
+no words to read."""
 _DPI = 200
 _TRUE_SIZE = re.compile(rb'^<svg [^>]*data-scale="1"')
 """The beginning of a drawing that a print of its page is measured by."""
+_STEP = re.compile(r"\d+\. ")
+"""The beginning of a step's heading."""
 _WHOLE_ROWS = 14  # of a table that is not parted between pages
 _LETTER, _PADDING = 4.9, 18.0  # width of a letter of a cell's text, and what is left beside it
 
@@ -99,19 +115,23 @@ def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
 
 
 def _kept(tokens: list[Token], files: Files) -> list[Flowable]:
-    """A step with drawings is not broken if it fits on a page, and of more than one page takes the
-    fewest, if need be with smaller drawings; one without begins below the step before it."""
-    if not any(child.type == "image" for token in tokens for child in token.children or []):
+    """A step is not broken if it fits on a page, and of more than one page takes the fewest, if
+    need be with smaller drawings. What is no step goes on below what is before it."""
+    drawn = any(child.type == "image" for token in tokens for child in token.children or [])
+    if not (drawn or _STEP.match(tokens[1].content)):
         return list(_flowables(tokens, files))
-    return kept_step([partial(_step, tokens, files, share) for share in _SHARES])
+    layouts = _LAYOUTS if drawn else _LAYOUTS[:1]
+    return kept_step([partial(_step, tokens, files, layout) for layout in layouts])
 
 
-def _step(tokens: list[Token], files: Files, share: float) -> list[Flowable]:
-    return list(_flowables(tokens, files, share))
+def _step(tokens: list[Token], files: Files, layout: _Layout) -> list[Flowable]:
+    return list(_flowables(tokens, files, layout))
 
 
-def _flowables(tokens: list[Token], files: Files, share: float = 1.0) -> Iterator[Flowable]:
-    """The blocks of the text, one after the other, with drawings of a share of their size."""
+def _flowables(
+    tokens: list[Token], files: Files, layout: _Layout = _LAYOUTS[0]
+) -> Iterator[Flowable]:
+    """The blocks of the text, one after the other, with drawings as a layout has them."""
     numbers: list[int | None] = []
     rows: list[list[Paragraph]] = []
     for at, token in enumerate(tokens):
@@ -136,7 +156,7 @@ def _flowables(tokens: list[Token], files: Files, share: float = 1.0) -> Iterato
             elif numbers:
                 yield Paragraph(_inline(token), ITEM, bulletText=_bullet(numbers))
             else:
-                yield from _paragraph(token, files, share)
+                yield from _paragraph(token, files, layout)
 
 
 def _bullet(numbers: list[int | None]) -> str:
@@ -151,17 +171,17 @@ def _heading(level: int, token: Token) -> Iterator[Flowable]:
     yield Paragraph(_inline(token), HEADS[min(level, 4)])
 
 
-def _paragraph(token: Token, files: Files, share: float) -> Iterator[Flowable]:
+def _paragraph(token: Token, files: Files, layout: _Layout) -> Iterator[Flowable]:
     children = token.children or []
     pictures = [child for child in children if child.type == "image"]
     if not pictures:
         yield Paragraph(_inline(token), BODY)
-    columns = next(n for n, most in _COLUMNS if len(pictures) <= most)
+    columns = max(min(len(pictures), layout.row), 1)
     width = (WIDTH - (columns - 1) * _GAP) / columns
     high = _PAIR_HIGH if columns > 1 else _MOST_HIGH
     shown = [
         [
-            _picture(str(child.attrs["src"]), files, width, high, share),
+            _picture(str(child.attrs["src"]), files, width, high, layout),
             Paragraph(escape(child.content), SMALL),
         ]
         for child in pictures
@@ -172,14 +192,14 @@ def _paragraph(token: Token, files: Files, share: float) -> Iterator[Flowable]:
         yield Table(rows, [WIDTH / columns] * columns, style=BESIDE)
 
 
-def _picture(path: str, files: Files, width: float, high: float, share: float) -> Flowable:
+def _picture(path: str, files: Files, width: float, high: float, layout: _Layout) -> Flowable:
     """A drawing stays a drawing, at most in its own size; a picture of pixels stays one."""
     if path.endswith(".svg"):
         data = files.read(path)
         drawing = svg2rlg(io.BytesIO(data))
         if drawing.width > _WIDE * WIDTH:
             high = max(high, _WIDE_HIGH)
-        smaller = 1.0 if _TRUE_SIZE.search(data) else share
+        smaller = 1.0 if _TRUE_SIZE.search(data) else layout.drawing
         scale = smaller * min(1.0, width / drawing.width, high / drawing.height)
         drawing.scale(scale, scale)
         drawing.width, drawing.height = drawing.width * scale, drawing.height * scale
@@ -188,7 +208,7 @@ def _picture(path: str, files: Files, width: float, high: float, share: float) -
         _letter(drawing)
         return drawing
     seen = PIL.Image.open(io.BytesIO(files.read(path)))
-    scale = share**2 * min(width / seen.width, high / seen.height)  # it has no words to read
+    scale = layout.pixels * min(width / seen.width, high / seen.height)
     wide, high = seen.width * scale, seen.height * scale
     # On the white of paper, and hardly finer than it is printed.
     small = seen.convert("RGBA").reduce(max(1, round(inch / scale / _DPI)))

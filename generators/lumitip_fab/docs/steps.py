@@ -1,5 +1,6 @@
 """`WorkStep`: a step of the work, as the notes and the manual have it."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 
@@ -21,3 +22,8 @@ class WorkStep:
         """For the manual, which keeps a step on one page where it fits."""
         shown = "\n".join(f"![{caption}]({path})" for path, caption in self.drawings)
         return "\n\n".join(filter(None, [f"## #. {self.title}", shown, self.text]))
+
+
+def numbered(work: Iterable[str]) -> str:
+    """A numbered list in Markdown."""
+    return "\n".join(f"{n}. {text}" for n, text in enumerate(work, 1))

@@ -1,11 +1,14 @@
-"""`wiring/*`: the list of cables as a table and as a note, and the diagram."""
+"""`wiring/*`: the list of cables as a table and as a note, and the diagram; the two steps of the
+work, for the note and for the manual."""
 
 import csv
 import io
 
-from lumitip_fab.design import Cable, Cabling, Design, Pack, Wire
-from lumitip_fab.design.cabling import COLOURS, THREAD_MM, codes_of, named, outer_mm
+from lumitip_fab.design import Cable, Cabling, Design, Pack, Tie, Wire
+from lumitip_fab.design.cabling import COLOURS, THREAD_MM, awg, codes_of, named, outer_mm
 from lumitip_fab.docs.diagram import diagram
+from lumitip_fab.docs.spec_circuit import pulled_up
+from lumitip_fab.docs.steps import WorkStep
 from lumitip_fab.pipeline.artefact import Artefact
 from lumitip_fab.text import as_written, passage
 
@@ -53,19 +56,40 @@ def cable_list(cabling: Cabling) -> str:
 
 
 def wiring_note(design: Design) -> str:
-    """The wires with what to mind, in Markdown."""
-    title, cabling = design.title, design.cabling
-    return passage(_TEXTS, "note").format(
-        ties=_tied(design) + _lugged(design),
-        title=as_written(f"{title.name} {title.revision}"),
+    """The steps of the work in Markdown."""
+    name = as_written(f"{design.title.name} {design.title.revision}")
+    steps = (step.note() for step in wiring_steps(design))
+    return "\n\n".join([f"# Wiring {name}", *steps]) + "\n"
+
+
+def wiring_steps(design: Design) -> tuple[WorkStep, ...]:
+    """The wires that are cut, and how they are soldered in and held."""
+    cut = WorkStep("Cut the wires", _cut(design))
+    shown = ("wiring/wiring.svg", "Wiring")
+    return cut, WorkStep("Solder the wires", _soldered(design), (shown,))
+
+
+def _cut(design: Design) -> str:
+    cabling = design.cabling
+    sections = sorted({cable.section_mm2 for cable in cabling.cables})
+    return passage(_TEXTS, "cut").format(
+        wires=listed([f"stranded wire of {mm2:g} mm² (AWG {awg(mm2)})" for mm2 in sections]),
         tables="\n\n".join(map(_table, cabling.cables)),
         marked=_marked(cabling, design.purchase.pack("stranded wire")),
-        power=_power(design),
         travel_mm=cabling.travel_mm,
         controller_mm=cabling.controller_mm,
         supply_mm=cabling.supply_mm,
         slack_mm=cabling.slack_mm,
         loop=min(cabling.loops, key=lambda loop: loop.radius_mm / loop.least_mm),
+    )
+
+
+def _soldered(design: Design) -> str:
+    return passage(_TEXTS, "soldered").format(
+        ties_needed=", waxed thread" * any(_boards_with_ties(design).values()),
+        ties=_tied(design) + _lugged(design),
+        power=_power(design),
+        weak=f"{pins}.\n\n" if (pins := pulled_up(design.wiring)) else "",
     )
 
 
@@ -77,7 +101,7 @@ def _marked(cabling: Cabling, pack: Pack | None) -> str:
     if not known or not others:
         return ""
     marks = "; ".join(f"{wire.number} {_mark(wire.colour, known)}" for wire in others)
-    return passage(_TEXTS, "marked").format(count=len(known), wires=marks) + "\n"
+    return passage(_TEXTS, "marked").format(count=len(known), wires=marks)
 
 
 def _mark(colour: str, known: tuple[str, ...]) -> str:
@@ -88,10 +112,15 @@ def _mark(colour: str, known: tuple[str, ...]) -> str:
     return f"{COLOURS[ground][0]}, marked {' and '.join(COLOURS[code][0] for code in marks)}"
 
 
-def _tied(design: Design) -> str:
-    """The step that holds the cables; empty where no board has holes for a thread."""
+def _boards_with_ties(design: Design) -> dict[str, tuple[Tie, ...]]:
+    """Pairs of holes for a thread, by the name of their board."""
     ties = {f.name: f.ties for f in design.fingers}
-    ties |= {board.name: board.ties for board in design.auxiliary_boards}
+    return ties | {board.name: board.ties for board in design.auxiliary_boards}
+
+
+def _tied(design: Design) -> str:
+    """How the cables are held; empty where no board has holes for a thread."""
+    ties = _boards_with_ties(design)
     tied = [name for name, found in ties.items() if found]
     if not tied:
         return ""
@@ -109,13 +138,17 @@ def _tied(design: Design) -> str:
 
 def _lugged(design: Design) -> str:
     """The lugs that cable ties go through; empty where no part has any."""
-    named = ["fingers"] * bool(design.mount.lugs)
-    named += [holder.name for holder in design.holders if holder.lugs]
+    held = [holder.name for holder in design.holders if holder.lugs]
+    named = ["fingers"] * bool(design.mount.lugs) + held
     lugs = (*design.mount.lugs, *(lug for holder in design.holders for lug in holder.lugs))
     if not lugs:
         return ""
     wide, thick = lugs[0].tie_mm
-    return passage(_TEXTS, "lugged").format(parts=listed(named), wide=wide, thick=thick)
+    steps = ['step "Mount the controller"'] * bool(held)
+    steps += ['step "Mount the fingers"'] * bool(design.mount.lugs)
+    return passage(_TEXTS, "lugged").format(
+        parts=listed(named), wide=wide, thick=thick, steps=listed(steps)
+    )
 
 
 def listed(names: list[str]) -> str:
@@ -149,15 +182,19 @@ def _fed_by(cabling: Cabling, joined: bool) -> str:
     plugged = [w for w in cabling.cables[2].wires if w.end.board == "flange"]
     headers = {wire.end.connector for wire in plugged}
     contacts = ", ".join(f"{w.number} goes to contact {w.end.pin}" for w in plugged)
-    section_mm2 = cabling.cables[2].section_mm2
-    thick = section_mm2 > SLOT_MM2 or outer_mm(section_mm2) > SLOT_MM
-    pressed = passage(_TEXTS, "pressed_flat" if thick else "pressed").format(slot_mm=SLOT_MM)
     lit = any(wire.signal == "5V" for wire in cabling.cables[0].wires)
     feeds = ("lit" if lit else "fed") + ("_joined" if joined else "")
     return passage(_TEXTS, feeds) + "".join(
-        passage(_TEXTS, "at_flange").format(header=header, contacts=contacts, pressed=pressed)
+        passage(_TEXTS, "at_flange").format(header=header, contacts=contacts)
         for header in sorted(headers)
     )
+
+
+def pressed(cabling: Cabling) -> str:
+    """How wires come into a socket for flat cable."""
+    section_mm2 = cabling.cables[2].section_mm2
+    thick = section_mm2 > SLOT_MM2 or outer_mm(section_mm2) > SLOT_MM
+    return passage(_TEXTS, "pressed_flat" if thick else "pressed").format(slot_mm=SLOT_MM)
 
 
 def fed(cabling: Cabling) -> bool:
@@ -168,7 +205,7 @@ def fed(cabling: Cabling) -> bool:
 def _table(cable: Cable) -> str:
     start, end = cable.start.board, cable.end.board
     head = f"""\
-## {cable.name}: {start} to {end}, {cable.length_mm:g} mm of {cable.section_mm2:g} mm²
+### {cable.name}: {start} to {end}, {cable.length_mm:g} mm of {cable.section_mm2:g} mm²
 
 | wire | colour | {start} | signal | {end} | at most (mA) |
 |---|---|---|---|---|---:|
