@@ -2,7 +2,9 @@
 
 import re
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +32,7 @@ class Source:
 
     path: Path
     table: Table
-    lines: dict[str, int] = field(default_factory=dict)
+    lines: Mapping[str, int] = field(default_factory=dict)
 
     def line(self, dotted: str) -> int:
         """Line of a field, of the nearest table around it, or 1."""
@@ -139,7 +141,8 @@ def _refusal(shown: str, line: int, message: str) -> InputError:
     return InputError([Problem(shown, line, "", message)])
 
 
-def _lines_of(text: str) -> dict[str, int]:
+@lru_cache(maxsize=256)  # most time of reading: who reads many designs has the same catalogue
+def _lines_of(text: str) -> Mapping[str, int]:
     """Line of every table header and key; statements over several lines count as one."""
     lines: dict[str, int] = {}
     section = ""

@@ -5,6 +5,7 @@ import types
 import typing
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -66,14 +67,20 @@ def read_design(path: Path) -> Design:
         raise OutputError(f"{path}: is not a design of this version: {error!r}") from error
 
 
+@lru_cache
+def _fields(kind: type) -> tuple[tuple[str, Any], ...]:
+    """Names and types of the fields of a dataclass."""
+    hints = typing.get_type_hints(kind)
+    return tuple((each.name, hints[each.name]) for each in fields(kind))
+
+
 def _decoded(value: Any, kind: type[T]) -> T:
     if kind is Layout:
         return typing.cast(T, Layout.from_json(json.dumps(value)))
     if isinstance(kind, type) and issubclass(kind, Strict):
         return kind.model_validate_json(json.dumps(value))
     if is_dataclass(kind):
-        hints = typing.get_type_hints(kind)
-        values = {f.name: _decoded(value[f.name], hints[f.name]) for f in fields(kind)}
+        values = {name: _decoded(value[name], hint) for name, hint in _fields(kind)}
         return typing.cast(T, kind(**values))
     arguments = typing.get_args(kind)
     if typing.get_origin(kind) in (types.UnionType, typing.Union):

@@ -6,6 +6,7 @@ otherwise.
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -153,14 +154,7 @@ class Outline:
         Args:
             steps: chords for each curved piece; straight pieces need one.
         """
-        corners = []
-        for piece in self.curve:
-            p = np.array(piece)
-            straight = np.allclose(p[1], p[0] + (p[3] - p[0]) / 3, atol=1e-9)
-            t = np.linspace(0.0, 1.0, (1 if straight else steps) + 1)[:-1, None]
-            b = ((1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t), t**3)
-            corners.append(sum(w * q for w, q in zip(b, p, strict=True)))
-        return np.concatenate(corners)
+        return _corners(self.curve, steps)
 
     def half_width_at(self, y_mm: float) -> float:
         """Half the outline's width at a height y."""
@@ -168,6 +162,21 @@ class Outline:
         right = corners[corners[:, 0] >= 0]
         order = np.argsort(right[:, 1], kind="stable")
         return float(np.interp(y_mm, right[order, 1], right[order, 0]))
+
+
+@lru_cache(maxsize=64)  # asked for at every height of an outline
+def _corners(curve: tuple[Cubic, ...], steps: int) -> NDArray[np.float64]:
+    """Corners of an outline, read-only."""
+    corners = []
+    for piece in curve:
+        p = np.array(piece)
+        straight = np.allclose(p[1], p[0] + (p[3] - p[0]) / 3, atol=1e-9)
+        t = np.linspace(0.0, 1.0, (1 if straight else steps) + 1)[:-1, None]
+        b = ((1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t), t**3)
+        corners.append(sum(w * q for w, q in zip(b, p, strict=True)))
+    whole = np.concatenate(corners)
+    whole.flags.writeable = False
+    return whole
 
 
 @dataclass(frozen=True)

@@ -49,9 +49,10 @@ class _Room:
         """Whether a hole has room here."""
         inner = self.box.grown(-self.corner_mm)
         reach = HOLE_MM / 2
+        least = GAP_MM + reach - 1e-9
         return (
             _apart_mm(at, inner) <= self.corner_mm - WEB_MM - reach
-            and all(_apart_mm(at, box) >= GAP_MM + reach - 1e-9 for box in self.taken)
+            and all(_apart_mm(at, box) >= least for box in self.taken if _near(at, box, least))
             and all(
                 math.dist(at, other) >= WEB_MM + reach + diameter_mm / 2 - 1e-9
                 for other, diameter_mm in self.holes
@@ -188,6 +189,14 @@ def boxes_of(part: Component) -> Iterator[Box]:
         ]
         xs, ys = zip(*places, strict=True)
         yield Box(min(xs), max(xs), min(ys), max(ys))
+
+
+def _near(at: Point, box: Box, mm: float) -> bool:
+    """Whether a point is within a rectangle grown by some distance, to its square corners."""
+    return (
+        box.x_min_mm - mm < at[0] < box.x_max_mm + mm
+        and box.y_min_mm - mm < at[1] < box.y_max_mm + mm
+    )
 
 
 def _apart_mm(at: Point, box: Box) -> float:
