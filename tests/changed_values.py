@@ -56,7 +56,7 @@ CHANGES: dict[str, Any] = {
     "emitter.string_leds": 12,
     "emitter.drive": "source",
     "emitter.source": "other",
-    "emitter.resistor": "1210",
+    "emitter.resistor": "2010",
     "emitter.resistor_side": "front",
     "emitter.switch": "AO3400A",
     "receiver.photodetector": "PT19-21C",

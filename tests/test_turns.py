@@ -57,6 +57,7 @@ def collected(folder: Path, part: int, parts: int) -> set[str]:
     return {line.partition("::")[2] for line in done.stdout.splitlines() if "::" in line}
 
 
+@pytest.mark.slow
 def test_every_slow_test_has_its_turn_once(folder: Path) -> None:
     every = collected(folder, 0, 1)
     parts = [collected(folder, part, PARTS) for part in range(PARTS)]
@@ -67,6 +68,7 @@ def test_every_slow_test_has_its_turn_once(folder: Path) -> None:
     assert all(len(part) > len(always) for part in parts)
 
 
+@pytest.mark.slow
 def test_the_boards_of_a_preset_have_their_turn_together(folder: Path) -> None:
     for part in range(PARTS):
         names = collected(folder, part, PARTS)

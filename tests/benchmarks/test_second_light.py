@@ -112,6 +112,7 @@ def test_the_far_side_of_an_edge_is_free(lit: Light) -> None:
     assert corner[(LAYOUT.y_mm > 5.0) | (LAYOUT.x_mm < -5.0)].min() > 0.85
 
 
+@pytest.mark.slow
 def test_mirror_images_have_mirrored_values() -> None:
     lit = Light.of(LAYOUT, Tips(), seed=5, straight=6000, walks=20_000)
     mirrored = [

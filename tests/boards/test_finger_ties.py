@@ -25,6 +25,7 @@ def _derived(tmp_path: Path, text: str) -> Design:
     return derive(load(tmp_path / "mine.toml"))
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 def test_every_rigid_board_has_two_holes_at_its_wires(file: Path) -> None:
     design = derive(load(file))

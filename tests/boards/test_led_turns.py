@@ -36,6 +36,7 @@ def led(order_number: str) -> Component:
     return Component("D1", "", order_number, "led", CHIP, 0, 0, 0.0, "front", ())
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     ("name", "turns"),
     [

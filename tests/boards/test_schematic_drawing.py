@@ -201,6 +201,7 @@ def test_what_is_ordered_has_its_numbers(drawn: Drawn, board: tuple[str, str]) -
         assert any(part.kind == "regulator" and part.datasheet for part in parts.values())
 
 
+@pytest.mark.slow
 def test_the_title_block_has_date_revision_and_hash_of_the_design(drawn: Drawn) -> None:
     """The date is written in the parameter file: the same file gives the same bytes on each day."""
     design, placed, sheet = drawn(("published", "flange"))

@@ -64,6 +64,7 @@ DAMAGES: dict[str, tuple[Callable[[Path], None], str]] = {
 }
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("case", DAMAGES)
 def test_a_figure_that_was_changed_in_one_of_them(case: str, copied: Path) -> None:
     damage, name = DAMAGES[case]

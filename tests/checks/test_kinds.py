@@ -30,6 +30,7 @@ def _in_time() -> Iterator[None]:
     signal.alarm(0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", MADE)
 @pytest.mark.parametrize(
     ("path", "others"),

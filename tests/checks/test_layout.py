@@ -76,6 +76,7 @@ DAMAGES = {
 }
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("damage", DAMAGES, ids=lambda d: d.__name__)
 def test_a_damage_fails_exactly_these_checks(
     damage: Callable[[dict[str, Any]], None],

@@ -192,6 +192,7 @@ def test_a_matrix_that_is_no_motion(
     assert failing(damaged) == {"manifest.matrices"}
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     ("path", "keys", "value"),
     [

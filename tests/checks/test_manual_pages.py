@@ -193,6 +193,7 @@ def test_links_that_lead_somewhere_pass(tmp_path: Path) -> None:
     assert failing(tmp_path) == set()
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("name", DAMAGES)
 def test_damage_fails_exactly(name: str, tmp_path: Path) -> None:
     damage, expected = DAMAGES[name]

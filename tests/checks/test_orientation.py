@@ -20,6 +20,8 @@ from lumitip_fab.design.frames import backing_bed_to_sensor
 from lumitip_fab.design.strength import lying_safety
 from printed_fingers import written
 
+pytestmark = pytest.mark.slow
+
 PART = "backing/receiver_backing.stl"
 
 

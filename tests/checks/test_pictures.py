@@ -113,10 +113,12 @@ DAMAGES: dict[str, tuple[Damage, set[str]]] = {
 }
 
 
+@pytest.mark.slow
 def test_nothing_fails_as_it_is_written(outputs: Path) -> None:
     assert failing(outputs, "pictures") == set()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", DAMAGES)
 def test_a_damage_is_found(case: str, copied: Path) -> None:
     damage, expected = DAMAGES[case]

@@ -32,6 +32,7 @@ def _seen(png: bytes) -> dict[str, np.ndarray]:
     return {"all": there, "a": there & (red > blue + 30), "b": there & (blue > red + 30)}
 
 
+@pytest.mark.slow
 def test_each_side_has_its_colour_in_its_place() -> None:
     bodies = {
         "both": _box(-5, -5, 0, 5, 5, 2),

@@ -17,6 +17,8 @@ from programs import program
 from repository_pages import PROJECT, linked, page_of, rewritten
 from site_page import axe
 
+pytestmark = pytest.mark.slow
+
 EXTENSIONS = [next(iter(e)) if isinstance(e, dict) else e for e in CONFIG["markdown_extensions"]]
 INDEX = ROOT / "docs/index.md"
 SHOWN = (
@@ -121,7 +123,6 @@ def test_links_out_of_the_docs_lead_to_pages_of_the_site() -> None:
     assert moved == "[a](../../../view.md)"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_it_opens_from_a_folder_without_a_network(doc_site: Path, size: str, scheme: str) -> None:

@@ -209,6 +209,7 @@ DAMAGES = {
 """Damages of the row of the firmware's page, and what is said of them."""
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_a_damaged_row_is_found(damage: str) -> None:
     old, new, said = DAMAGES[damage]

@@ -14,6 +14,8 @@ import lumitip_fab
 import preset_figures
 from preset_figures import FILE, PRESETS, drawn
 
+pytestmark = pytest.mark.slow
+
 FIGURES = json.loads(FILE.read_text("utf-8"))
 NAMES = [preset.stem for preset in PRESETS]
 REMEDY = "run python docs/site/preset_figures.py"
@@ -30,7 +32,6 @@ def test_it_has_every_preset(doc_site: Path) -> None:
         assert f"<td>{FIGURES[preset.stem]['price']:.0f}</td>" in text
 
 
-@pytest.mark.slow_cases
 @pytest.mark.parametrize("name", ["published", *(n for n in NAMES if n != "published")])
 def test_the_figures_of_a_design_are_those_of_the_gallery(name: str) -> None:
     (file,) = (preset for preset in PRESETS if preset.stem == name)
@@ -38,7 +39,6 @@ def test_the_figures_of_a_design_are_those_of_the_gallery(name: str) -> None:
     assert near(found, name), REMEDY
 
 
-@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     "name", ["published", "fingertip", "dense", "flex", "integrated", "asymmetric"]
 )
@@ -49,7 +49,6 @@ def test_the_figures_of_a_build_are_those_of_the_gallery(
     assert near(found, name), REMEDY
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("page", ["README.md", "docs/index.md"])
 def test_pages_have_the_price_of_whole_packs(page: str, built: Callable[[str], Path]) -> None:
     text = (FILE.parents[2] / page).read_text("utf-8")

@@ -40,6 +40,7 @@ def imported_by(starts: Iterable[Path]) -> set[Path]:
     return found - {ROOTS["lumitip_fab"] / "pipeline/__init__.py"}
 
 
+@pytest.mark.slow
 def test_whatever_judges_a_design_makes_it_judged_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -20,6 +20,7 @@ def build(file: Path, out: Path) -> int:
     return main(["build", str(file), "--out", str(out), "--only", "slicer", "--quiet"])
 
 
+@pytest.mark.slow
 def test_a_build_without_the_readings_of_the_last_one_says_so(
     design_dir: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

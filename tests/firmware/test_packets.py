@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from lumitip.protocol import cobs
 from lumitip.protocol.packet import Packet, decode, encode
@@ -27,6 +28,7 @@ def some_packets() -> list[Packet]:
     return packets
 
 
+@pytest.mark.slow
 def test_packets_agree_in_both_directions(
     host_program: Callable[..., Path], run: Callable[..., object]
 ) -> None:

@@ -21,6 +21,7 @@ def begun(shape: Shape, folder: Path, *options: str) -> list[str]:
     return ["gripper", "new", "jaw", *out, *options]
 
 
+@pytest.mark.slow
 def test_a_gauge_is_written_once_its_figures_are_certain(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -37,6 +38,7 @@ def test_a_gauge_is_written_once_its_figures_are_certain(
     assert not gauge.exists(), "it was of figures that are open again"
 
 
+@pytest.mark.slow
 def test_a_gauge_that_cannot_be_made_says_why(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

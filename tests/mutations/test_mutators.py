@@ -167,6 +167,7 @@ def test_pages_that_look_alike_are_no_mutants() -> None:
             PDF[kind](target.getvalue(), default_rng(1))
 
 
+@pytest.mark.slow
 def test_what_nobody_reads_stays_in_the_manifest(outputs: Path) -> None:
     """The build's memory of its steps, and matrices of files that have no place."""
     before = json.loads((outputs / "manifest.json").read_bytes())

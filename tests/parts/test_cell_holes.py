@@ -63,6 +63,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
 }
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(("changes", "text"), REFUSED.values(), ids=REFUSED)
 def test_what_cannot_be_made_is_refused_with_its_field(
     published: Input, changes: dict[str, Any], text: str

@@ -139,6 +139,7 @@ NONE = {
 }
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("case", NONE)
 def test_without_room_there_is_none(case: str, design_dir: Path, tmp_path: Path) -> None:
     for name in ("published.toml", "flex.toml"):

@@ -11,6 +11,8 @@ import pytest
 from release.changes import ReleaseError, newest_release, release_time_s
 from release.dist import build_dist
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 
 

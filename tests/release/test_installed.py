@@ -12,6 +12,8 @@ import pytest
 
 from markdown_pages import README, code_blocks
 
+pytestmark = pytest.mark.slow
+
 NEWER = ("python3.12", "python3.13", "python3.14")
 
 
@@ -122,7 +124,6 @@ def test_the_maker_starts_from_an_empty_folder(maker: Path, tmp_path: Path) -> N
     assert _run(maker / "lumitip-fab", "schema", folder=tmp_path).returncode == 0
 
 
-@pytest.mark.slow
 def test_the_wheel_builds_the_same_files_as_the_source(
     maker: Path, outputs: Path, tmp_path: Path
 ) -> None:

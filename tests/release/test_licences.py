@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from reuse.project import Project
 
 ROOT = Path(__file__).parents[2]
@@ -26,11 +27,13 @@ def _lint(folder: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.slow
 def test_every_file_has_a_licence() -> None:
     done = _lint(ROOT)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.slow
 def test_a_missing_text_and_a_file_without_a_licence_are_found(
     copy_repository: Callable[[Path], Path], tmp_path: Path
 ) -> None:

@@ -37,6 +37,7 @@ def _exposure(task: Task, changes: tuple[tuple[str, object], ...] = ()) -> float
     return float(judge(Job.of(task, changes, Reference.of(task)))["figures"]["exposure"])
 
 
+@pytest.mark.slow
 def test_light_that_is_taken_away_in_fixed_counts_as_in_vary(tmp_path: Path) -> None:
     fixed = _task(tmp_path, "\n".join(f"{name} = {value}" for name, value in DIM.items()))
     exposure = _exposure(fixed)
@@ -61,6 +62,7 @@ def test_a_base_that_is_refused_by_itself_is_an_error(tmp_path: Path) -> None:
         Reference.of(read_goals(file))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("fixed", "other"), [(LED, True), ('emitter.led = "{}"', False)])
 def test_another_led_has_its_own_reference_and_the_study_says_so(
     fixed: str, other: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -135,6 +135,7 @@ def test_a_study_in_the_folder_of_its_base_leaves_the_catalogue_there(tmp_path: 
     assert text.count("# mine") == 2
 
 
+@pytest.mark.slow
 def test_folders_that_were_built_of_another_design_are_named(task: Task, out: Path) -> None:
     files.write(_study(task, 2), out)
     (out / "point-9").mkdir()

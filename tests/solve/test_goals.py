@@ -87,6 +87,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("change", FAULTS, ids=lambda c: c[1] or c[0])
 def test_a_fault_has_its_line_and_what_is_allowed(change: tuple[str, str], goals: Path) -> None:
     goals.write_text(goals.read_text().replace(*change))

@@ -55,6 +55,7 @@ def test_sizes_of_groups_become_one_size_for_each_cell(goals: Path) -> None:
     assert joined((("mask.layers", 2), *changes), COLUMNS)[0] == ("mask.layers", 2)
 
 
+@pytest.mark.slow
 def test_a_design_with_sizes_is_judged_by_them(goals: Path) -> None:
     task = read_goals(goals)
     names, reference = axis_names(COLUMNS, "ring"), Reference.of(task)

@@ -57,6 +57,7 @@ def test_known_optics_and_gains_leave_the_bound_of_the_noise(
     assert own == pytest.approx(bound, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_every_unknown_makes_the_errors_larger(
     layout: Layout, monkeypatch: pytest.MonkeyPatch
 ) -> None:

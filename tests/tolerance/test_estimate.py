@@ -21,6 +21,7 @@ def drawn(design: Resolved, fingers: int, seed: int) -> Draws:
     return draw(design.config.catalogue.tolerances, spreads(design.config), cells, fingers, seed)
 
 
+@pytest.mark.slow
 def test_errors_of_many_frames_are_those_of_the_pose_estimator(
     design: Resolved, tried: Bench
 ) -> None:

@@ -34,6 +34,7 @@ def goals_file(folder: Path, design_dir: Path, edge_mm: float = 0.9, cable: str 
     return file
 
 
+@pytest.mark.slow
 def test_a_study_tries_the_gaps_and_cables_of_a_goals_file(
     design_dir: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -66,6 +67,7 @@ def test_cables_without_a_goal_are_not_tried(
     assert "NaN" not in text
 
 
+@pytest.mark.slow
 def test_errors_are_those_over_the_poses_of_all_grasps(design: Resolved) -> None:
     layout, columns = design.design.layout, COLUMNS[1:2]
     models = [Model.from_layout(layout, gap_mm) for gap_mm in (2.0, 5.0)]
@@ -83,6 +85,7 @@ def test_errors_are_those_over_the_poses_of_all_grasps(design: Resolved) -> None
     assert (of_thin[:, 2] != of_thick[:, 2]).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("diameter_mm", [2.0, 4.0, 6.0])
 def test_a_cable_of_any_diameter_is_found_on_a_finger_that_is_built_as_drawn(
     diameter_mm: float, design: Resolved

@@ -46,6 +46,7 @@ def changed(exact: Draws, **values: object) -> Draws:
     return {**exact, **{name: np.array([value], float) for name, value in values.items()}}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lines", [EDGES, CABLES], ids=["edge", "cable"])
 @pytest.mark.parametrize(
     ("deviation", "model", "place"),
@@ -122,6 +123,7 @@ def factor(layout: Layout, model: Model) -> float:
     return (centre_mm(0.01) - centre_mm(-0.01)) / 0.02
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(("exponent", "least", "most"), [(1.0, 0.59, 0.63), (6.0, 0.5, 0.52)])
 def test_the_receivers_mask_moves_estimates_by_a_factor_that_geometry_predicts(
     layout: Layout, exact: Draws, exponent: float, least: float, most: float

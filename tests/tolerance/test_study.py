@@ -29,6 +29,8 @@ from lumitip_fab.tolerance.study import (
 )
 from lumitip_fab.tolerance.yields import design_effect, good, interval, wilson
 
+pytestmark = pytest.mark.slow
+
 FEW = Options(fingers=16, poses=4, seed=2)
 WIDE = Goals.of_both(1.0, 5.0)
 COMMAND = ("--fingers", "16", "--poses", "4", "--seed", "2")

@@ -61,6 +61,7 @@ def arguments(gauge: Path, out: Path) -> list[str]:
     return ["accept", url, "--gauge", str(gauge), "--out", str(out), "--seconds", "1"]
 
 
+@pytest.mark.slow
 def test_an_emitter_that_is_not_plugged_in_gets_its_verdict(
     gauge_file: Path, tmp_path: Path, bench: Bench, monkeypatch, capsys
 ) -> None:
@@ -179,6 +180,7 @@ def test_without_a_keyboard_nothing_is_written(
     assert not list((tmp_path / "out").iterdir())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("entered", [0, 2])
 def test_ctrl_c_at_a_step_ends_it_and_leaves_no_file(
     gauge_file: Path, tmp_path: Path, entered: int
@@ -209,6 +211,7 @@ def test_ctrl_c_at_a_step_ends_it_and_leaves_no_file(
     assert not list(tmp_path.glob("data/**/*.json"))
 
 
+@pytest.mark.slow
 def test_ctrl_c_while_the_report_is_written_leaves_it_whole(
     gauge_file: Path, tmp_path: Path, bench: Bench, monkeypatch, capsys
 ) -> None:

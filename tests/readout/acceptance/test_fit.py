@@ -42,6 +42,7 @@ def test_a_deviation_is_found_again(
     assert 0.0 < found.sd[name] < 1.0
 
 
+@pytest.mark.slow
 def test_a_single_cell_that_misfits_does_not_bend_the_result(bench: Bench, judge: Judge) -> None:
     frames = bench.frames({"receiver_x": 0.5})
     for part in frames.gauge:

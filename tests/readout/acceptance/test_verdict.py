@@ -160,6 +160,7 @@ def test_flicker_in_a_steady_step_is_noise(bench: Bench, judge: Judge) -> None:
     assert set(kinds(verdict)) == {"noisy"}
 
 
+@pytest.mark.slow
 def test_a_gauge_put_in_the_wrong_way_round_is_unexplained(bench: Bench, judge: Judge) -> None:
     frames = bench.frames()
     verdict = judge(replace(frames, gauge=(*frames.gauge[2:], *frames.gauge[:2])))

@@ -108,6 +108,7 @@ def test_times_after_a_stall_at_the_start_lead_little_and_not_long(
     assert np.diff(times_s).min() >= 0.25 * period_s - 1e-9
 
 
+@pytest.mark.slow
 def test_a_link_that_stalls_and_then_bursts_keeps_the_times_of_its_frames(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

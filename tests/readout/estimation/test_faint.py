@@ -12,6 +12,7 @@ from lumitip.twin import Cable, Twin
 EMPTY, COUNTS = 400, 255.0
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     ("diameter_mm", "offset_mm"), [(0.6, -0.25), (0.8, 1.5), (2.0, -0.5), (3.0, 0.0)]
 )

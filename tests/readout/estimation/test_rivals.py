@@ -32,6 +32,7 @@ def _gross(estimate: Estimate, cable: Cable) -> bool:
     return offset_mm > FAR_MM or angle_deg > FAR_DEG
 
 
+@pytest.mark.slow
 def test_a_tracked_line_stays_ambiguous_until_frames_refute_the_other(
     cells: Layout, wrong_twins: Sequence[Twin]
 ) -> None:
@@ -62,6 +63,7 @@ def test_frames_that_show_the_difference_end_the_ambiguity(
     assert "ambiguous" not in found.flags and not _gross(found, cable)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("diameter_mm", "most"), [(0.5, 0.06), (1.0, 0.06), (1.5, 0.03)])
 def test_a_thin_cable_is_looked_for_everywhere(
     cells: Layout, diameter_mm: float, most: float

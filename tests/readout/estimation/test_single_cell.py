@@ -27,6 +27,7 @@ def test_an_empty_grasp_with_one_dark_cell_has_no_line(
         assert estimator(values, "cable").kind == "none", cell
 
 
+@pytest.mark.slow
 def test_a_thin_cable_is_still_seen(estimator: PoseEstimator) -> None:
     """Its shadow is on several cells, wherever it lies."""
     for offset_mm in np.linspace(-6.0, 6.0, 13):

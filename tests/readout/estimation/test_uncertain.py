@@ -53,6 +53,7 @@ def test_fingertips_with_cells_off_their_places_spread_as_is_said(
     assert said == pytest.approx(spread, rel=0.35)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "added_mm"), [("edge", 0.3), ("corner", 0.3), ("cable", 0.0)])
 def test_the_border_of_a_sheet_is_uncertain(
     cells: Layout, twin: Twin, kind: str, added_mm: float

@@ -76,6 +76,7 @@ def test_firmware_that_starts_anew_under_a_link_that_stands(
         assert (stats.restarts, stats.reconnects, stats.dropped["link"]) == (1, 0, 0)
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("after", range(6))
 def test_disconnected_at_any_moment(bluez: FakeBluez, device, after: int) -> None:
     """The link falls before the n-th of: connect, read, two subscriptions, first frames."""

@@ -63,6 +63,7 @@ def _sending(send: Callable[[int], None]) -> Iterator[None]:
         sender.join()
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("name", TWIN)
 def test_examples_on_the_twin(name: str) -> None:
     arguments, line, least = TWIN[name]

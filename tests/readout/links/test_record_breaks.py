@@ -39,6 +39,7 @@ def _record(line: Line, layout_file: Path, path: Path, seconds: float) -> int:
     return main([*arguments, "--seconds", str(seconds)])
 
 
+@pytest.mark.slow
 def test_a_silence_is_said_and_its_end(
     line: Line, device, layout_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -52,6 +53,7 @@ def test_a_silence_is_said_and_its_end(
     assert "4 frames recorded" in said and "silent for 1." in said
 
 
+@pytest.mark.slow
 def test_a_recording_that_ends_silent_is_no_success(
     line: Line, device, layout_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -64,6 +66,7 @@ def test_a_recording_that_ends_silent_is_no_success(
     assert len(list(Reader(tmp_path / "run.mcap"))) == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seconds", [0.4, 1.5])
 def test_a_device_that_never_sends_leaves_no_file_behind(
     line: Line, layout_file: Path, tmp_path: Path, seconds: float

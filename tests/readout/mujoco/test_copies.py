@@ -26,6 +26,7 @@ def twice(radius_mm: float, collides: bool, begins_at_other_end: bool = False) -
     return add
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     "add", [twice(1.5, True), twice(1.5, True, True), twice(1.5, False), twice(1.6, False)]
 )

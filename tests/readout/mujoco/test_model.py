@@ -89,6 +89,7 @@ def test_attached_fingers_open_by_their_prefix() -> None:
         open_fingers(mujoco.MjSpec().compile(), data, 6.0)
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("radius_mm", [0.5, 2.0])
 def test_the_fingers_close_on_a_body_with_their_force(radius_mm: float) -> None:
     spec = fingers(LAYOUT, force_n=10.0)

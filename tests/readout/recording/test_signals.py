@@ -15,6 +15,7 @@ from lumitip.recording import Reader
 pytestmark = pytest.mark.usefixtures("hangups")
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     ("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 0), (signal.SIGHUP, 0)]
 )
@@ -49,6 +50,7 @@ def test_record_goes_on_without_its_terminal_where_nohup_has_asked_for_it(tmp_pa
     assert len(list(Reader(path))) > 100
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, -15), (signal.SIGHUP, -1)]
 )

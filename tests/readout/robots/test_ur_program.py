@@ -52,6 +52,7 @@ def test_an_arm_that_was_stopped_has_no_measured_motion(arm: URArm) -> None:
         arm.measured()
 
 
+@pytest.mark.slow
 def test_the_example_says_why_the_arm_was_stopped(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -56,6 +56,7 @@ def newest_age_s(node: Any) -> float:
     return time.time() - stamp.sec - stamp.nanosec * 1e-9
 
 
+@pytest.mark.slow
 def test_a_node_that_is_too_slow_publishes_the_newest_frames(slow: Any) -> None:
     time.sleep(0.3)
     ages_s = []
@@ -190,6 +191,7 @@ def test_an_untared_finger_is_a_warning_until_it_is_tared(make_node: Make) -> No
     assert diagnosed(again)[:2] == (b"\0", "frames arrive"), "the stored tare is used"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed", ["", "?speed=0", "?speed=1"])
 def test_a_recording_plays_from_its_first_frame_once_the_node_is_active(
     make_node: Make, tmp_path: Path, speed: str

@@ -67,6 +67,7 @@ def test_clients_without_a_line_lock_nobody_out(
         assert time.monotonic() - began_s < 30.0, "it waits for clients that say nothing"
 
 
+@pytest.mark.slow
 def test_a_full_server_says_so(
     serve: Serve, until: Callable[..., None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -96,6 +97,7 @@ def test_a_full_server_says_so(
             third.read(60.0)
 
 
+@pytest.mark.slow
 def test_the_connection_that_asks_for_the_layout_takes_no_room(
     serve: Serve, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -178,6 +178,7 @@ def test_ids_make_one_or_many_and_draw_them(kind: str) -> None:
     assert many.unwrapped.num_envs == 2
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("mode", [None, "sync"])
 @pytest.mark.parametrize("most_frames", [3, 2000])
 def test_a_limit_of_steps_by_the_name_of_gymnasium(mode: str | None, most_frames: int) -> None:

@@ -17,6 +17,7 @@ SCENES = [
 ]
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("again", [lambda t: pickle.loads(pickle.dumps(t)), copy.deepcopy])
 def test_a_pickled_twin_reads_the_same(again) -> None:
     layout = published_layout()

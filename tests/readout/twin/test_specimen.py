@@ -10,6 +10,8 @@ from real_fit import NAMES, RealFit, Shared
 from real_light import RealLight
 from real_terms import MADE, PLAIN, Numbers, RealTwin
 
+pytestmark = pytest.mark.slow
+
 SD = 0.04
 """Deviation of the prior of the gains, as in `benchmarks/bench_real_misfit.py`."""
 Own = dict[str, Numbers]
@@ -42,7 +44,6 @@ def made(fit: RealFit) -> Own:
     return _own(fit, {name: PLAIN[name] | MADE.get(name, {}) for name in NAMES})
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("objects", ["plain", "made"])
 def test_gains_of_two_frames_lower_the_misfit_of_the_third(
     fit: RealFit, objects: str, request: pytest.FixtureRequest

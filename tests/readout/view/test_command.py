@@ -57,6 +57,7 @@ def test_two_words_show_a_demonstration_and_ctrl_c_ends_it(tmp_path: Path) -> No
     assert reader.metadata.device_id == "twin:demo"
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("hangups")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_a_recording_of_the_view_whole(tmp_path: Path, number: int) -> None:
@@ -107,6 +108,7 @@ def taken(port: int, capsys: pytest.CaptureFixture[str]) -> str:
     return error.removeprefix(before)
 
 
+@pytest.mark.slow
 def test_a_port_of_a_mute_program_says_what_to_do_within_seconds(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
@@ -124,6 +126,7 @@ def test_a_port_of_a_shared_fingertip_says_its_name(capsys: pytest.CaptureFixtur
     assert error.startswith(f"`lumitip serve` shares twin:disc there. Open {address} instead, or")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("token", [None, "secret"])
 def test_a_port_of_another_live_view_says_so(
     token: str | None, capsys: pytest.CaptureFixture[str], tmp_path: Path

@@ -36,6 +36,7 @@ def test_answers_are_those_of_the_estimator(layout: Layout) -> None:
     assert list(answers([])) == []
 
 
+@pytest.mark.slow
 def test_an_estimate_comes_for_the_newest_frame_and_close_ends_the_process(
     layout: Layout, wait_for: WaitFor
 ) -> None:

@@ -41,6 +41,7 @@ def control(tip: Fingertip) -> Placeable:
     return tip.simulated
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("name", SCENES)
 def test_an_object_stands_where_it_is_put_and_moves_on_when_asked(
     name: str, wait_for: WaitFor
@@ -120,6 +121,7 @@ def ask(server: ViewServer, number: int, body: dict[str, Any]) -> tuple[int, str
         return answer.status, answer.read().decode()
 
 
+@pytest.mark.slow
 def test_the_estimate_expects_the_diameter_that_was_set(serve: Serve, wait_for: WaitFor) -> None:
     server = serve("twin://cable?noise=0")
     finger = server.registry.fingers[1]
