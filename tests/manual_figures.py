@@ -157,8 +157,10 @@ def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
 
 
 def _lost_files(outputs: Path, manual: Manual) -> list[str]:
+    """Named files that are not there; `NAME` stands for each finger."""
     named = {code for code in manual.codes if _FILE.fullmatch(code)}
-    return sorted(name for name in named if not any(outputs.glob(name)))
+    meant = {name.replace("NAME", finger) for name in named for finger in ("emitter", "receiver")}
+    return sorted(name for name in meant if not any(outputs.glob(name)))
 
 
 def _wrong_figures(manual: Manual, design: Design) -> list[str]:

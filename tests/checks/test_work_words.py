@@ -42,7 +42,7 @@ def test_nothing_fails_as_it_is_drawn(copied: Path) -> None:
     [
         (CONTACTS, "24V", "GND", "contacts"),
         (CONTACTS, "1", "3", "contacts"),
-        (CONTACTS, "locating pin", "Von", "contacts"),
+        (CONTACTS, "hole for the locating pin", "Von", "contacts"),
         (FOLDED, "4", "21", "flaps"),
         (FOLDED, "1", "2", "flaps"),
     ],

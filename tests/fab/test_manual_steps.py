@@ -50,7 +50,8 @@ def test_the_force_that_a_finger_bears_is_named_before_the_gripper_closes(output
     )
     limit = mount.index(f"Limit the force of the gripper to {strength.rated_force_n:g} N")
     assert f"up to {strength.gripper_n:g} N, which can break a finger" in mount
-    assert limit < mount.index("screw each finger on") < mount.index("open and close the gripper")
+    assert limit < mount.index("Look up in the gripper's manual") < mount.index("screw each finger")
+    assert mount.index("screw each finger on") < mount.index("Open and close the gripper")
 
 
 @pytest.mark.parametrize("preset", PRESETS)
@@ -211,8 +212,9 @@ def test_flange_and_mounting_are_numbered_lists_from_the_robot_to_the_fingers(
         ],
         "Mount the fingers": [
             "along the outside of its lugs",
+            "Look up in the gripper's manual",
             "screw each finger",
-            "open and close",
+            "Open and close",
         ],
     }
     titles = re.findall(r"<h2>\d+\. (.*?)</h2>", (outputs / HTML).read_text(encoding="utf-8"))

@@ -18,7 +18,7 @@ _PLACE = re.compile(r"(-?[\d.]+),(-?[\d.]+)")
 _UP_MM = 1.3  # from the line that letters stand on to their middle
 _LINE_MM = 2.0  # height between a leader's end and its words, at most
 _AT_MM = 0.1
-_PIN = ("locating pin",)
+_PIN = ("hole for the locating pin",)
 _CONTACTS = "manual/contacts.svg"
 
 

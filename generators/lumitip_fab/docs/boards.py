@@ -45,7 +45,7 @@ def soldering(design: Design, files: Files) -> str:
         broken=_text("broken", board=design.board) + "\n" if design.panels else "",
         solder=design.heat_steps["solder"],
         reflowed=reflowed,
-        hot_air=", hot air, flux" * bool(reflowed),
+        hot_air=", hot air, flux pen" * bool(reflowed),
         calipers=", calipers" * sunk,
         thick=_thick(design.stack.pcb_mm) if sunk else "",
         short=3 if sunk else 2,

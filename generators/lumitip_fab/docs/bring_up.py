@@ -7,12 +7,19 @@ from lumitip_fab.design import Cabling, Design
 from lumitip_fab.text import passage
 
 
-def bring_up_steps(design: Design) -> tuple[str, str]:
-    """The firmware loaded, with the LEDs' current; and the first test."""
+def bring_up_steps(design: Design, picture: str = "") -> tuple[str, str]:
+    """The firmware loaded, with the LEDs' current; and the first test.
+
+    Args:
+        design: for wires, supply and controller.
+        picture: of the controller's board, in Markdown.
+    """
     switched = design.wiring.emitter_pin is not None
     loaded = _text(
         "loaded",
-        soldered=", a soldering iron" * _has_module(design),
+        picture=f"{picture}\n\n" if picture else "",
+        soldered=", a soldering iron, a programmer for SWD" * _has_module(design),
+        gauge=" and `gauge.json`" * bool(design.gauge_cards),
         loading=_loading(design) + "".join(_lights(design)),
         limit_ma=_limit_ma(design),
         tape=design.mould.tape,
@@ -21,7 +28,10 @@ def bring_up_steps(design: Design) -> tuple[str, str]:
         lit="They are dark until the firmware runs, and draw" if switched else "They draw",
         current_ma=sum(design.wiring.current_ma),
     )
-    return loaded, _text("tested")
+    boards = [board.name for board in design.auxiliary_boards]
+    near = "breakout" if "breakout" in boards else "flange" if "flange" in boards else ""
+    beside = f"the {near} board lies" if near else "the wires lie"
+    return loaded, _text("tested", beside=beside)
 
 
 def _poles(cabling: Cabling, net: str) -> str:

@@ -175,7 +175,7 @@ def _fitted(design: Design) -> str:
     work, needs, good = [_text("cleaned")], "", "it lies on tip line and both pads"
     for clamp in design.clamps:
         work.append(_text("screwed", clamp=clamp))
-        needs = f"the clamp, {clamp.screw.name} screws and nuts, "
+        needs = f"the clamp, {clamp.screw.name} screws and nuts, a screwdriver, a spanner, "
         good += ", and the marks are in one line at four corners"
     work.append(_text("laid_dry"))
     work += [_text("clamped_dry") for _ in design.clamps]
@@ -268,7 +268,7 @@ def _clamped(design: Design) -> str:
 
 def _out(design: Design) -> str:
     mould, bends = design.mould, not design.stack.sunk
-    held = ["clamp, screws and nuts"] if design.clamps else []
+    held = ["the clamp with its nuts"] if design.clamps else []
     taped = bends or not design.clamps or any(open_back(design, f) for f in design.fingers)
     held += ["all tape"] * taped
     return _text(

@@ -6,7 +6,7 @@ from dataclasses import replace
 from itertools import count
 from typing import Any
 
-from lumitip_fab.design import Design
+from lumitip_fab.design import Design, Flange
 from lumitip_fab.design.cabling import supplied_headers
 from lumitip_fab.docs.boards import faces, ordering, pictures, soldering
 from lumitip_fab.docs.bring_up import bring_up_steps
@@ -17,7 +17,7 @@ from lumitip_fab.docs.casting import (
     silicone_mix,
     volume_ml,
 )
-from lumitip_fab.docs.flange import flange_steps
+from lumitip_fab.docs.flange import coupling_step, flange_board_step, flange_step
 from lumitip_fab.docs.front import WARM_UP_MIN, front
 from lumitip_fab.docs.measuring import measuring
 from lumitip_fab.docs.mounting import mounting_steps
@@ -44,17 +44,19 @@ def manual_text(design: Design, files: Files) -> str:
         front(design),
         _bought(design, files),
         measuring(design),
+        *(coupling_step(design, flange) for flange in design.flanges),
         ordering(design, files),
         soldering(design, files),
+        *(flange_board_step(design, f) for f in design.flanges if not _board_has_own_step(design)),
         _printed(design, files),
         *(step.section() for step in wiring_steps(design)),
-        *bring_up_steps(design),
+        *bring_up_steps(design, _controllers_board(design, files)),
         *(
             step.section()
             for step in casting_steps(design, design.fingers, _amounts(design, files))
         ),
         *_masked(design, files),
-        *(step for f in design.flanges for step in flange_steps(design, f, _flange(design, files))),
+        *(step for f in design.flanges for step in _flange_steps(design, f, files)),
         *mounting_steps(design),
         _run(design),
         _kept(design),
@@ -148,22 +150,38 @@ def _masked(design: Design, files: Files) -> Iterator[str]:
     yield from (step.section() for step in others)
 
 
-def _flange(design: Design, files: Files) -> str:
-    """Pictures of the flange's board, where it is shown in its own step."""
+def _controllers_board(design: Design, files: Files) -> str:
+    """A picture of the board that the controller is on."""
+    own = [board for board in design.auxiliary_boards if not has_own_step(board, design)]
+    return pictures([(board.name, "front") for board in own], files)
+
+
+def _board_has_own_step(design: Design) -> bool:
+    return any(has_own_step(board, design) for board in design.auxiliary_boards)
+
+
+def _flange_steps(design: Design, flange: Flange, files: Files) -> Iterator[str]:
+    """The flange's board with its pictures, unless it was tried before its wires went in; then the
+    flange itself."""
     own = [board for board in design.auxiliary_boards if has_own_step(board, design)]
-    return pictures((face for board in own for face in faces(board)), files)
+    if own:
+        shown = pictures((face for board in own for face in faces(board)), files)
+        yield flange_board_step(design, flange, shown)
+    yield flange_step(design, flange)
 
 
 def _run(design: Design) -> str:
     """Warm-up, tare, and the test with the gauge card where there is one."""
     cards = len(design.gauge_cards)
-    values = {"accept_min": ACCEPT_MIN, "thickness_mm": design.stack.thickness_mm}
+    measured = _text("measured_fingers", thickness_mm=design.stack.thickness_mm)
     return _text(
         "run",
         warm_up_min=WARM_UP_MIN,
         minutes=RUN_MIN + ACCEPT_MIN * cards,
         gauged=", the gauge card, thin sheet metal, calipers" * cards,
-        accepted="\n" + _text("accepted", **values).strip() if cards else "",
+        measured=measured if cards else "",
+        supply="the robot's tool output" if design.flanges else "the LEDs' supply",
+        accepted="\n" + _text("accepted", accept_min=ACCEPT_MIN).strip() if cards else "",
     )
 
 

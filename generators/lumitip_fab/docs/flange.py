@@ -20,27 +20,34 @@ BOARD_MIN, FLANGE_MIN = 30, 20
 """How long the work on the board takes, and building it in (assumed)."""
 
 
-def flange_steps(design: Design, flange: Flange, pictures: str = "") -> Iterator[str]:
-    """From the coupling on the robot to the supply that is measured.
+def coupling_step(design: Design, flange: Flange) -> str:
+    """The look at the coupling, before boards and bolts are ordered."""
+    return _text("coupling_step", work=numbered(_looked(design)), lengths=_lengths(flange))
+
+
+def flange_board_step(design: Design, flange: Flange, pictures: str = "") -> str:
+    """The test of the flange's board.
 
     Args:
         design: with the flange.
-        flange: whose steps they are.
-        pictures: of its board, in Markdown, where no other step has them.
+        flange: whose board it is.
+        pictures: of the board, in Markdown, where no other step has them.
     """
-    yield _text("coupling_step", work=numbered(_looked(design)), lengths=_lengths(flange))
     board = _flange(design)
-    own = has_own_step(board, design)
-    yield _text(
+    return _text(
         "flange_board_step",
         pictures=f"{pictures}\n\n" if pictures else "",
         needs=", ".join(_needs(design)),
         minutes=BOARD_MIN,
         work=numbered(_boarded(design, flange)),
-        protection=protection_note(board, design) if own else "",
+        protection=protection_note(board, design) if has_own_step(board, design) else "",
         contacts=_contacts(design),
     )
-    yield _text(
+
+
+def flange_step(design: Design, flange: Flange) -> str:
+    """The flange built in, up to the supply that is measured."""
+    return _text(
         "flange_step",
         flange=flange,
         glue=design.strength.glue,
@@ -59,7 +66,7 @@ def _looked(design: Design) -> Iterator[str]:
 def _needs(design: Design) -> Iterator[str]:
     """Tools for the board, and what is used up."""
     yield "a soldering iron, solder, side cutters, safety glasses, a multimeter, a bench supply"
-    if plugs(design):
+    if front_headers(_flange(design)):
         yield "a small vice"
 
 
@@ -76,6 +83,7 @@ def _boarded(design: Design, flange: Flange) -> Iterator[str]:
 
 def _built_in(design: Design, flange: Flange) -> Iterator[str]:
     """From the board in its printed part to the supply that is measured."""
+    yield _text("gripper_off")
     hard_h = design.mould.glue_hard_h
     wait = f"for {hard_h:g} h" if hard_h else "for as long as its label says"
     yield _text("closed", flange=flange, glue=design.strength.glue, wait=wait)

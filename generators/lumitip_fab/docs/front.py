@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from lumitip_fab.design import Design, HeatStep, Mask, Mould
-from lumitip_fab.design.cabling import plugged_headers
 from lumitip_fab.text import as_written, passage
 
 WARM_UP_MIN = 5
@@ -46,11 +45,11 @@ def _words(design: Design) -> Iterator[str]:
 
 def _board_tools(design: Design) -> str:
     """For a module, panels, a socket on wires, a board that is tied on, and a smooth film."""
-    plugs = plugged_headers(design.cabling.cables, design.auxiliary_boards)
     components = (part for board in design.auxiliary_boards for part in board.components)
-    tools = ["hot air to solder with"] * any(part.kind == "module" for part in components)
+    module = any(part.kind == "module" for part in components)
+    tools = ["hot air to solder with", "a programmer for SWD"] * module
     tools += ["pliers"] * bool(design.panels)
-    tools += ["a small vice"] * bool(plugs) + ["a needle"] * bool(design.interfaces)
+    tools += ["a small vice"] * bool(design.flanges) + ["a needle"] * bool(design.interfaces)
     tools += ["a cutting mat, a plastic card"] * bool(design.mould.inserts)
     return "".join(f", {tool}" for tool in tools)
 

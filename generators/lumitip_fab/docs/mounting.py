@@ -19,7 +19,7 @@ def mounting_steps(design: Design) -> Iterator[str]:
         "gripper_step",
         title="Mount the controller" if design.holders else "Try the gripper",
         work=numbered(_gripper_work(design)),
-        needs=", ".join(["the keys and screwdrivers", *_ties(bool(design.holders))]),
+        needs=", ".join(["the keys and screwdrivers", *_gripper_needs(design)]),
         minutes=10 + 15 * len(design.holders),
         dead=_text("dead_behind" if design.flanges else "dead"),
         slipping=_text("slipping") * bool(design.holders),
@@ -32,6 +32,12 @@ def mounting_steps(design: Design) -> Iterator[str]:
         ways=cable_ways(design),
         closed=_text("touch_first" if design.mount.tilt_deg else "parallel"),
     )
+
+
+def _gripper_needs(design: Design) -> list[str]:
+    """Ties for the controller's board, and tape for fingers whose cables end at it."""
+    outside = any(board.name == "breakout" for board in design.auxiliary_boards)
+    return _ties(outside) + [design.mould.tape] * bool(design.holders)
 
 
 def _ties(used: bool) -> list[str]:
@@ -62,7 +68,9 @@ def _gripper_work(design: Design) -> Iterator[str]:
         sockets = "".join(_text("plugged", cable=cable, header=header) for header, cable in found)
         feeds = bool(found) and design.feed is not None and not design.feed.diode
         yield _text("connected", sockets=sockets + _text("unplugged") * feeds)
-    yield _text("activated", rated_n=design.strength.rated_force_n, greatest=_greatest(design))
+    aside = _text("fixed_aside" if design.holders else "laid_aside")
+    rated_n = design.strength.rated_force_n
+    yield _text("activated", aside=aside, rated_n=rated_n, greatest=_greatest(design))
 
 
 def _finger_work(design: Design) -> Iterator[str]:
@@ -70,6 +78,7 @@ def _finger_work(design: Design) -> Iterator[str]:
     mount = design.mount
     if _tied(design):
         yield _text("tied")
+    yield _text("force_first", rated_n=design.strength.rated_force_n)
     yield _text("screwed_on", bolts=len(mount.bolt_u_mm), mount=mount)
     wires = [wire for cable in design.cabling.cables for wire in cable.wires]
     led_net = f"{design.wiring.supply_v:g}V"
@@ -81,7 +90,7 @@ def _finger_work(design: Design) -> Iterator[str]:
         name = "supplied_free" if feed and feed.diode else "supplied_joined"
         free = "".join(_text(name, wire=number) for number in own)
         yield _text("supplied", ends=listed_ends, free=free)
-    yield _text("moved", rated_n=design.strength.rated_force_n)
+    yield _text("moved")
 
 
 def _to_robot(design: Design, holder: Holder) -> list[str]:

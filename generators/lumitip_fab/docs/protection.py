@@ -36,7 +36,15 @@ def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
             if part.kind == "resistor" and {net for _, net in part.nets} & lines
         ]
         limited = _text("protected_series", resistors=_references(held)) if held else ""
-        yield _text("protected_esd", board=board.name, diodes=_references(diodes), limited=limited)
+        module = bool(kinds["module"])
+        yield _text(
+            "protected_esd",
+            board=board.name,
+            diodes=_references(diodes),
+            limited=limited,
+            before="the wires are on" if module else "wires and controller are on",
+            missing=_text("protected_module" if module else "protected_plain"),
+        )
     for part in kinds[TVS]:
         melts = "".join(_text("protected_fuse", fuse=fuse) for fuse in kinds[FUSE])
         where = "its test" if has_own_step(board, design) else "the first test"

@@ -71,11 +71,13 @@ def wiring_steps(design: Design) -> tuple[WorkStep, ...]:
 
 def _cut(design: Design) -> str:
     cabling = design.cabling
+    marked = _marked(cabling, design.purchase.pack("stranded wire"))
     sections = sorted({cable.section_mm2 for cable in cabling.cables})
     return passage(_TEXTS, "cut").format(
         wires=listed([f"stranded wire of {mm2:g} mm² (AWG {awg(mm2)})" for mm2 in sections]),
         tables="\n\n".join(map(_table, cabling.cables)),
-        marked=_marked(cabling, design.purchase.pack("stranded wire")),
+        marked=marked,
+        pen="a permanent pen, " * bool(marked),
         travel_mm=cabling.travel_mm,
         controller_mm=cabling.controller_mm,
         supply_mm=cabling.supply_mm,
@@ -139,7 +141,7 @@ def _tied(design: Design) -> str:
 def _lugged(design: Design) -> str:
     """The lugs that cable ties go through; empty where no part has any."""
     held = [holder.name for holder in design.holders if holder.lugs]
-    named = ["fingers"] * bool(design.mount.lugs) + held
+    named = ["the fingers"] * bool(design.mount.lugs) + [f"the {name}" for name in held]
     lugs = (*design.mount.lugs, *(lug for holder in design.holders for lug in holder.lugs))
     if not lugs:
         return ""

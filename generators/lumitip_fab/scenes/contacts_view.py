@@ -20,8 +20,8 @@ _METAL, _PIN = "#d9dde2", "#8b95a1"
 
 
 def contacts_view(flange: Flange) -> str:
-    """The face of the coupling with recess, bolts, locating pin and contacts, seen from the
-    gripper; x towards the pin."""
+    """The face of the coupling with recess, bolts, contacts and the hole for the locating pin, seen
+    from the gripper; x towards the pin."""
     sheet = Sheet()
     sheet.area([_circle((0.0, 0.0), flange.face_mm)], "body", _METAL)
     sheet.lines([_circle((0.0, 0.0), flange.centring_mm)], "line")
@@ -39,7 +39,7 @@ def contacts_view(flange: Flange) -> str:
     pin_x, pin_y = (SCALE * place for place in flange.pin_at)
     sheet.lines([np.array([(pin_x, pin_y), (right, pin_y)])], "leader")
     sheet.dot(pin_x, pin_y)
-    sheet.words(right + 1.5, pin_y - 1.2, "locating pin", "detail", "start")
+    sheet.words(right + 1.5, pin_y - 1.2, "hole for the locating pin", "detail", "start")
     sheet.cover(right + _WORDS_MM, pin_y)
     return sheet.svg({"data-scale": SCALE})
 

@@ -11,6 +11,8 @@ from lumitip_fab.design import Clamp, Flange, Holder, Mount
 from lumitip_fab.design.mould import MOULDS
 from lumitip_fab.design.ordering import Bought, Pack, PartPrice, Purchase
 
+_BY_STEP = "length by step Look at the coupling"  # of the manual
+
 
 def derive_purchase(
     config: Input,
@@ -160,7 +162,13 @@ def _of_flange(config: Input, flange: Flange, packs: Mapping[str, Pack]) -> list
         (screw, "ISO 7046", where, count, f"{flange.screw} screw"),
         (nut, "ISO 4032", where, count, nut),
         (pin, "ISO 2338", "flange to coupling, glued in", 1, "parallel pin"),
-        (f"{bolt}, length by step Flange", "ISO 4762", longer, len(flange.bolts), bolt),
+        (
+            f"{bolt}, {_BY_STEP}",
+            "ISO 4762",
+            longer,
+            len(flange.bolts),
+            bolt,
+        ),
     )
     return [_fastener(*row, packs) for row in rows]
 

@@ -112,7 +112,8 @@ def _loop_mm(one: Point, other: Point, through_mm: float) -> float:
 
 def _held(of: Assembled) -> Iterator[Used]:
     """Cable ties: loops round the gripper through the lugs of the holder's arms, at the lugs of
-    fingers and holder, and without lugs round a cable that no thread holds."""
+    fingers and holder, without lugs round a cable that no thread holds, and at the controller's
+    board where no holder has it."""
     count = 0
     for holder in of.holders:
         each = max(2, math.ceil(holder.tie_loop_mm / (TIE_MM - TIE_LOCK_MM)))
@@ -121,8 +122,10 @@ def _held(of: Assembled) -> Iterator[Used]:
     lugs = sum(len(holder.lugs) for holder in of.holders)
     where = ["holder round the gripper"] * bool(count) + ["cables at the gripper"] * bool(loose)
     where += ["cables at the holder"] * bool(lugs)
+    beside = 0 if of.holders else 2 * sum(b.name == "breakout" for b in of.auxiliary_boards)
+    where += ["controller's board beside the gripper"] * bool(beside)
     if where:
-        yield Used("cable tie", ", ".join(where), count + len(loose) + lugs, "piece")
+        yield Used("cable tie", ", ".join(where), count + len(loose) + lugs + beside, "piece")
 
 
 def _plugged(config: Input, of: Assembled) -> Iterator[Used]:
