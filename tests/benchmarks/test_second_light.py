@@ -178,6 +178,7 @@ def test_fingertips_are_drawn_around_the_nominal_ones() -> None:
         assert abs(values - getattr(Tips(), name)).max() <= 2.0 * deviation + 1e-12
 
 
+@pytest.mark.slow
 def test_frames_are_tared_and_the_bound_grows_with_what_is_unknown(
     lit: Light, monkeypatch: pytest.MonkeyPatch
 ) -> None:

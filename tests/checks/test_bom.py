@@ -100,6 +100,7 @@ EDITS = [
 ]
 
 
+@pytest.mark.slow
 def test_nothing_fails_as_it_is_written(copied: Path) -> None:
     assert failing(copied) == set()
 

@@ -26,6 +26,7 @@ def test_a_file_lost_or_edited_behind_its_back(
     assert failing(damaged) == {"manifest.files"}
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     ("path", "row", "column", "value"),
     [
@@ -95,6 +96,7 @@ def test_a_listed_file_that_no_step_writes(damaged: Path, name: str, check: str)
     assert failing(damaged) == {f"manifest.{check}"}
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     ("name", "seen"),
     [

@@ -51,6 +51,7 @@ def test_each_side_has_its_colour_in_its_place() -> None:
     assert pictures(bodies) == pictures(bodies)
 
 
+@pytest.mark.slow
 def test_a_difference_inside_shines_through_and_a_film_of_rounding_does_not() -> None:
     solid = _box(-5, -5, 0, 5, 5, 10)
     hidden = _seen(pictures({"both": solid, "b": _box(-1, -1, 4, 1, 1, 6)})[0])

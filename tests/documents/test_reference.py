@@ -22,6 +22,8 @@ from lumitip_fab.derive import resolve
 from markdown_pages import ROOT
 from parameter_pages import allowed, unit
 
+pytestmark = pytest.mark.slow
+
 SCHEMA = json.loads((ROOT / "design/schema.json").read_text("utf-8"))
 ROUNDING_MM = 0.06
 """A board's width is rounded to 0.1 mm."""

@@ -4,7 +4,6 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
 import pikepdf
 import pytest
 
@@ -146,33 +145,6 @@ def test_nothing_stands_twice(copied: Path) -> None:
     sentences = [" ".join(s.split()) for block in plain for s in re.split(r"(?<=[.:?]) ", block)]
     said = [sentence for sentence in sentences if len(sentence) > 32]
     assert sorted(sentence for sentence in set(said) if said.count(sentence) > 1) == []
-
-
-def lowest_of(page: pikepdf.Page) -> float:
-    """Height of the lowest words of a page over its edge, without the two at its foot (points)."""
-    now, kept, heights = np.eye(3), [np.eye(3)], list[float]()
-    line = np.eye(3)
-    for operands, operator in pikepdf.parse_content_stream(page):
-        match str(operator):
-            case "q":
-                kept.append(now)
-            case "Q":
-                now = kept.pop()
-            case "cm" | "Tm" as kind:
-                a, b, c, d, e, f = map(float, operands)
-                matrix = np.array([[a, b, 0], [c, d, 0], [e, f, 1]])
-                now, line = (matrix @ now, line) if kind == "cm" else (now, matrix)
-            case "Tj":
-                heights.append(float((line @ now)[2, 1]))
-    return min(heights[2:])
-
-
-def test_no_page_but_the_last_is_half_empty(outputs: Path) -> None:
-    with pikepdf.open(outputs / PDF) as document:
-        *pages, _last = document.pages
-        margin, high = 51.0, float(pages[0].mediabox[3])
-        for number, page in enumerate(pages, 1):
-            assert lowest_of(page) - margin < 0.5 * (high - 2 * margin), f"page {number}"
 
 
 def test_a_step_that_fits_on_a_page_is_not_broken(copied: Path) -> None:

@@ -160,8 +160,7 @@ def test_a_socket_is_pressed_where_a_cable_is_plugged_in(
     step = steps(design)
     assert step.count("Press the socket") == step.count("plug the socket") == sockets
     assert step.count("a small vice") == len(design.flanges)
-    own = step.count("To press a socket on")
-    assert step.count("press the cover down") == sockets + own
+    assert step.count("press the cover down") == max(sockets, len(design.flanges))
 
 
 def test_without_a_flange_nothing_is_said_of_it(written: Written) -> None:

@@ -47,6 +47,7 @@ def test_packets_agree_in_both_directions(
         assert read.split() == [str(code) for code in packet.values.ravel().tolist()]
 
 
+@pytest.mark.slow
 def test_cobs_agrees(host_program: Callable[..., Path], run: Callable[..., object]) -> None:
     rng = np.random.default_rng(11)
     texts = [bytes(n) for n in (1, 2, 300)] + [b"\1" * n for n in (253, 254, 255, 508, 509, 762)]

@@ -65,6 +65,7 @@ def test_self_calibration_finds_what_learning_finds(design: Resolved, tried: Ben
         assert learned.model.alpha - model.alpha == pytest.approx(alpha, abs=0.08)
 
 
+@pytest.mark.slow
 def test_self_calibration_lowers_the_misfit_of_an_uneven_finger(
     design: Resolved, tried: Bench
 ) -> None:

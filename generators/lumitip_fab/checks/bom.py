@@ -174,7 +174,7 @@ def _wrong_parts(rows: tuple[Row, ...], parts: Counter[Part], design: Design) ->
     for row in rows:
         if row.group == "electronics":
             counts[row.maker, row.part] += round(row.quantity)
-    soldered = any(d.kind == "module" for c in design.auxiliary_boards for d in c.components)
+    soldered = any(board.module for board in design.auxiliary_boards)
     wanted = parts + Counter({} if soldered else {("", design.controller.title): 1})
     return [
         f"{' '.join(part)}: {counts[part]}, not {wanted[part]}"

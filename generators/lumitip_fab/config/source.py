@@ -141,7 +141,7 @@ def _refusal(shown: str, line: int, message: str) -> InputError:
     return InputError([Problem(shown, line, "", message)])
 
 
-@lru_cache(maxsize=256)  # most time of reading: who reads many designs has the same catalogue
+@lru_cache(maxsize=256)  # takes most time of a load; designs share a catalogue
 def _lines_of(text: str) -> Mapping[str, int]:
     """Line of every table header and key; statements over several lines count as one."""
     lines: dict[str, int] = {}

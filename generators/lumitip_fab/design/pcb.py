@@ -204,6 +204,11 @@ class AuxiliaryBoard:
     finish: Finish = AUXILIARY_FINISH
 
     @property
+    def module(self) -> Component | None:
+        """The controller that is soldered on; none on other boards."""
+        return next((part for part in self.components if part.kind == "module"), None)
+
+    @property
     def nets(self) -> tuple[str, ...]:
         """Every net once, ground first."""
         used = (net for part in self.components for _, net in part.nets)

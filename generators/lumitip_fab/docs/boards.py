@@ -125,8 +125,8 @@ def _panels(design: Design) -> str:
 
 def _reflowed(design: Design) -> str:
     """How a part is soldered whose pads an iron does not reach: a module's."""
-    components = (part for board in design.auxiliary_boards for part in board.components)
-    return "".join(_text("reflowed", part=part) for part in components if part.kind == "module")
+    modules = [board.module for board in design.auxiliary_boards if board.module]
+    return "".join(_text("reflowed", part=module) for module in modules)
 
 
 def polarity_test(packages: Packages, fingers: tuple[Finger, ...]) -> str:

@@ -4,6 +4,8 @@ import math
 from collections.abc import Iterator
 
 from lumitip_fab.design import Cabling, Design
+from lumitip_fab.docs.protection import ends_of_fingers
+from lumitip_fab.docs.wiring import fed
 from lumitip_fab.text import passage
 
 
@@ -18,7 +20,8 @@ def bring_up_steps(design: Design, picture: str = "") -> tuple[str, str]:
     loaded = _text(
         "loaded",
         picture=f"{picture}\n\n" if picture else "",
-        soldered=", a soldering iron, a programmer for SWD" * _has_module(design),
+        soldered=", a soldering iron, solder, a programmer for SWD" * _has_module(design),
+        unplugged="Unplug USB. " * _joined(design),
         gauge=" and `gauge.json`" * bool(design.gauge_cards),
         loading=_loading(design) + "".join(_lights(design)),
         limit_ma=_limit_ma(design),
@@ -28,9 +31,8 @@ def bring_up_steps(design: Design, picture: str = "") -> tuple[str, str]:
         lit="They are dark until the firmware runs, and draw" if switched else "They draw",
         current_ma=sum(design.wiring.current_ma),
     )
-    boards = [board.name for board in design.auxiliary_boards]
-    near = "breakout" if "breakout" in boards else "flange" if "flange" in boards else ""
-    beside = f"the {near} board lies" if near else "the wires lie"
+    near = ends_of_fingers(design) & {board.name for board in design.auxiliary_boards}
+    beside = f"the {min(near)} board lies" if near else "their other ends lie"
     return loaded, _text("tested", beside=beside)
 
 
@@ -58,8 +60,13 @@ def _loading(design: Design) -> str:
 
 
 def _has_module(design: Design) -> bool:
-    components = (device for board in design.auxiliary_boards for device in board.components)
-    return any(device.kind == "module" for device in components)
+    return any(board.module for board in design.auxiliary_boards)
+
+
+def _joined(design: Design) -> bool:
+    """Whether the LEDs' supply feeds the controller with no diode before it."""
+    lit = any(wire.signal == "5V" for wire in design.cabling.cables[0].wires)
+    return lit and fed(design.cabling) and not (design.feed and design.feed.diode)
 
 
 def _lights(design: Design) -> Iterator[str]:

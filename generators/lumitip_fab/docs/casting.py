@@ -4,7 +4,7 @@ of its mould; for the note beside each mould and for the manual."""
 from collections.abc import Mapping
 
 from lumitip_fab.design import Design, Finger, Mould
-from lumitip_fab.docs.steps import WorkStep
+from lumitip_fab.docs.steps import WorkStep, numbered
 from lumitip_fab.pipeline.artefact import Artefact, Files
 from lumitip_fab.text import passage
 
@@ -181,11 +181,7 @@ def _fitted(design: Design) -> str:
     work += [_text("clamped_dry") for _ in design.clamps]
     work.append(_text("lifted_dry"))
     high = _text("high_dry") if design.clamps else ""
-    return _text("fitted", needs=needs, good=good, work=_numbered(work), high=high)
-
-
-def _numbered(work: list[str]) -> str:
-    return "\n".join(f"{n}. {text}" for n, text in enumerate(work, 1))
+    return _text("fitted", needs=needs, good=good, work=numbered(work), high=high)
 
 
 def _tried(design: Design) -> str:
@@ -240,7 +236,7 @@ def _filled(design: Design) -> str:
     full = "the silicone bulges over the weir and the stops"
     if props:
         full = "the silicone covers the tip line, and comes near to both pads"
-    return _text("filled", needs="".join(needs), work=_numbered(work), full=full)
+    return _text("filled", needs="".join(needs), work=numbered(work), full=full)
 
 
 def _lowered(design: Design) -> str:

@@ -23,7 +23,7 @@ from lumitip_fab.docs.measuring import measuring
 from lumitip_fab.docs.mounting import mounting_steps
 from lumitip_fab.docs.orders import amount, money
 from lumitip_fab.docs.page import html_page
-from lumitip_fab.docs.protection import has_own_step
+from lumitip_fab.docs.protection import ends_of_fingers, has_own_step
 from lumitip_fab.docs.sheet import pdf_sheets
 from lumitip_fab.docs.wiring import listed, wiring_steps
 from lumitip_fab.docs.wrapping import mask_facts, wrapping_steps
@@ -152,8 +152,8 @@ def _masked(design: Design, files: Files) -> Iterator[str]:
 
 def _controllers_board(design: Design, files: Files) -> str:
     """A picture of the board that the controller is on."""
-    own = [board for board in design.auxiliary_boards if not has_own_step(board, design)]
-    return pictures([(board.name, "front") for board in own], files)
+    near = ends_of_fingers(design)
+    return pictures([(b.name, "front") for b in design.auxiliary_boards if b.name in near], files)
 
 
 def _board_has_own_step(design: Design) -> bool:
@@ -173,13 +173,11 @@ def _flange_steps(design: Design, flange: Flange, files: Files) -> Iterator[str]
 def _run(design: Design) -> str:
     """Warm-up, tare, and the test with the gauge card where there is one."""
     cards = len(design.gauge_cards)
-    measured = _text("measured_fingers", thickness_mm=design.stack.thickness_mm)
     return _text(
         "run",
         warm_up_min=WARM_UP_MIN,
         minutes=RUN_MIN + ACCEPT_MIN * cards,
-        gauged=", the gauge card, thin sheet metal, calipers" * cards,
-        measured=measured if cards else "",
+        gauged=", the gauge card, thin sheet metal" * cards,
         supply="the robot's tool output" if design.flanges else "the LEDs' supply",
         accepted="\n" + _text("accepted", accept_min=ACCEPT_MIN).strip() if cards else "",
     )

@@ -45,8 +45,7 @@ def _words(design: Design) -> Iterator[str]:
 
 def _board_tools(design: Design) -> str:
     """For a module, panels, a socket on wires, a board that is tied on, and a smooth film."""
-    components = (part for board in design.auxiliary_boards for part in board.components)
-    module = any(part.kind == "module" for part in components)
+    module = any(board.module for board in design.auxiliary_boards)
     tools = ["hot air to solder with", "a programmer for SWD"] * module
     tools += ["pliers"] * bool(design.panels)
     tools += ["a small vice"] * bool(design.flanges) + ["a needle"] * bool(design.interfaces)

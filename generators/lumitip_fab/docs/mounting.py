@@ -27,7 +27,9 @@ def mounting_steps(design: Design) -> Iterator[str]:
     yield _text(
         "mounted",
         work=numbered(_finger_work(design)),
-        needs=", ".join(["the keys", *_ties(_tied(design))]),
+        needs=", ".join(
+            ["the keys", *_ties(_tied(design)), *["calipers"] * bool(design.gauge_cards)]
+        ),
         minutes=FINGERS_MIN,
         ways=cable_ways(design),
         closed=_text("touch_first" if design.mount.tilt_deg else "parallel"),
@@ -35,9 +37,10 @@ def mounting_steps(design: Design) -> Iterator[str]:
 
 
 def _gripper_needs(design: Design) -> list[str]:
-    """Ties for the controller's board, and tape for fingers whose cables end at it."""
-    outside = any(board.name == "breakout" for board in design.auxiliary_boards)
-    return _ties(outside) + [design.mould.tape] * bool(design.holders)
+    """Of the controller's board, and tape for fingers whose cables end at it."""
+    if design.holders:
+        return [*_ties(True), design.mould.tape]
+    return ["waxed thread"] * any(board.name == "breakout" for board in design.auxiliary_boards)
 
 
 def _ties(used: bool) -> list[str]:
@@ -78,8 +81,16 @@ def _finger_work(design: Design) -> Iterator[str]:
     mount = design.mount
     if _tied(design):
         yield _text("tied")
+    yield from _supplied(design)
+    if design.gauge_cards:
+        yield _text("measured_fingers", thickness_mm=design.stack.thickness_mm)
     yield _text("force_first", rated_n=design.strength.rated_force_n)
     yield _text("screwed_on", bolts=len(mount.bolt_u_mm), mount=mount)
+    yield _text("moved")
+
+
+def _supplied(design: Design) -> Iterator[str]:
+    """The wires that are joined to a supply."""
     wires = [wire for cable in design.cabling.cables for wire in cable.wires]
     led_net = f"{design.wiring.supply_v:g}V"
     ends = [wire for wire in wires if wire.end.board == "supply"]
@@ -90,7 +101,6 @@ def _finger_work(design: Design) -> Iterator[str]:
         name = "supplied_free" if feed and feed.diode else "supplied_joined"
         free = "".join(_text(name, wire=number) for number in own)
         yield _text("supplied", ends=listed_ends, free=free)
-    yield _text("moved")
 
 
 def _to_robot(design: Design, holder: Holder) -> list[str]:

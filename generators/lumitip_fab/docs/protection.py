@@ -19,9 +19,16 @@ def protection_note(board: AuxiliaryBoard, design: Design) -> str:
 
 
 def has_own_step(board: AuxiliaryBoard, design: Design) -> bool:
-    """Whether a board is shown and tested in a step of its own: the flange's, unless the wires of
-    the fingers end on it."""
-    return board.name == "flange" and len(design.auxiliary_boards) > 1
+    """Whether a board is shown and tested after the first test: the flange's, unless wires of the
+    fingers end on it."""
+    return board.name == "flange" and board.name not in ends_of_fingers(design)
+
+
+def ends_of_fingers(design: Design) -> set[str]:
+    """Where the wires of the fingers end: names of boards, or `"controller"`."""
+    fingers = {finger.name for finger in design.fingers}
+    cables = [cable for cable in design.cabling.cables if cable.start.board in fingers]
+    return {wire.end.board for cable in cables for wire in cable.wires} - {"supply"}
 
 
 def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
@@ -36,18 +43,20 @@ def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
             if part.kind == "resistor" and {net for _, net in part.nets} & lines
         ]
         limited = _text("protected_series", resistors=_references(held)) if held else ""
-        module = bool(kinds["module"])
         yield _text(
             "protected_esd",
             board=board.name,
             diodes=_references(diodes),
             limited=limited,
-            before="the wires are on" if module else "wires and controller are on",
-            missing=_text("protected_module" if module else "protected_plain"),
+            before="the wires are on" if board.module else "wires and controller are on",
+            missing=_text("protected_module" if board.module else "protected_plain"),
         )
     for part in kinds[TVS]:
         melts = "".join(_text("protected_fuse", fuse=fuse) for fuse in kinds[FUSE])
-        where = "its test" if has_own_step(board, design) else "the first test"
+        where = "the first test"
+        if board.name == "flange":
+            own = has_own_step(board, design)
+            where = "its test" if own else 'step "Try the flange board"'
         ends = "".join(
             _text("protected_reversed", part=mosfet, supply_v=design.wiring.supply_v)
             for mosfet in kinds[MOSFET]

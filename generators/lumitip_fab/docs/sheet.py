@@ -116,7 +116,7 @@ def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
 
 def _kept(tokens: list[Token], files: Files) -> list[Flowable]:
     """A step is not broken if it fits on a page, and of more than one page takes the fewest, if
-    need be with smaller drawings. What is no step goes on below what is before it."""
+    need be with smaller drawings. Other sections continue on the page."""
     drawn = any(child.type == "image" for token in tokens for child in token.children or [])
     if not (drawn or _STEP.match(tokens[1].content)):
         return list(_flowables(tokens, files))
@@ -247,7 +247,7 @@ def _table(rows: list[list[Paragraph]]) -> Flowable:
 
 
 def _asked(cell: Paragraph) -> float:
-    return float(max(cell.minWidth(), min(len(cell.getPlainText()), 34) * _LETTER)) + _PADDING
+    return float(max(cell.minWidth(), min(len(cell.getPlainText()), 100) * _LETTER)) + _PADDING
 
 
 def _inline(token: Token) -> str:

@@ -88,6 +88,7 @@ def _cut(design: Design) -> str:
 
 def _soldered(design: Design) -> str:
     return passage(_TEXTS, "soldered").format(
+        but=", but for the flange's" * any(board.module for board in design.auxiliary_boards),
         ties_needed=", waxed thread" * any(_boards_with_ties(design).values()),
         ties=_tied(design) + _lugged(design),
         power=_power(design),
@@ -146,11 +147,7 @@ def _lugged(design: Design) -> str:
     if not lugs:
         return ""
     wide, thick = lugs[0].tie_mm
-    steps = ['step "Mount the controller"'] * bool(held)
-    steps += ['step "Mount the fingers"'] * bool(design.mount.lugs)
-    return passage(_TEXTS, "lugged").format(
-        parts=listed(named), wide=wide, thick=thick, steps=listed(steps)
-    )
+    return passage(_TEXTS, "lugged").format(parts=listed(named), wide=wide, thick=thick)
 
 
 def listed(names: list[str]) -> str:
@@ -160,10 +157,10 @@ def listed(names: list[str]) -> str:
 
 def _power(design: Design) -> str:
     """How the controller comes by its supply, and what switches the LEDs."""
-    cabling, feed = design.cabling, design.feed
+    cabling = design.cabling
     wires = (wire for cable in cabling.cables for wire in cable.wires)
     switching = [wire for wire in wires if wire.signal == "LED"]
-    said = _seated(cabling) + _fed_by(cabling, joined=not (feed and feed.diode))
+    said = _seated(cabling) + _fed_by(design)
     if switching and switching[0].end.board == "controller":
         said = passage(_TEXTS, "alone_switched").format(pin=switching[0].end.pin)
     return said + (passage(_TEXTS, "switched") if switching else "")
@@ -175,10 +172,12 @@ def _seated(cabling: Cabling) -> str:
     return passage(_TEXTS, "seated") if "breakout" in boards else ""
 
 
-def _fed_by(cabling: Cabling, joined: bool) -> str:
+def _fed_by(design: Design) -> str:
     """How the controller comes by its supply, joined to its wire or behind a diode."""
+    cabling, joined = design.cabling, not (design.feed and design.feed.diode)
     if cabling.cables[1].end.board == "flange":
-        return passage(_TEXTS, "module")
+        (flange,) = design.flanges
+        return passage(_TEXTS, "module").format(tail_mm=flange.tail_mm)
     if not fed(cabling):
         return passage(_TEXTS, "alone")
     plugged = [w for w in cabling.cables[2].wires if w.end.board == "flange"]

@@ -172,8 +172,8 @@ def order_table(folder: Folder, targets: Targets) -> str:
         return orders
     stop = (
         f"Stop: nobody has measured which end of {' and '.join(unknown)} is marked. Try one of "
-        "each before you order, as step Boards of the manual says: boards with these parts the "
-        "wrong way round stay dark."
+        'each before you order, as step "Order the boards" of the manual says: boards with these '
+        "parts the wrong way round stay dark."
     )
     return f'<p class="stop"><strong>{stop}</strong></p>{orders}'
 

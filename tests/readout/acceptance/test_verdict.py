@@ -92,6 +92,7 @@ def test_thickness_is_judged_where_it_was_measured(
     assert "thickness" not in " ".join(kinds(judge(frames)))
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("pair", [(0, 1), (5, 20)])
 def test_swapped_cells_are_named(bench: Bench, judge: Judge, pair: tuple[int, int]) -> None:
     def swap(frames: np.ndarray) -> None:
@@ -134,6 +135,7 @@ def test_cells_that_are_bridged_are_named(bench: Bench, judge: Judge) -> None:
     assert "A bridge to another cell" in verdict.findings[0].text
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     ("kind", "change", "words"),
     [

@@ -176,6 +176,7 @@ def test_a_recording_ages_from_its_arrival(tmp_path, layout) -> None:
             tip.wait_latest(10.0)
 
 
+@pytest.mark.slow
 def test_coroutines_wait_for_the_newest() -> None:
     async def main() -> None:
         async with AsyncFingertip.open("twin://disc?rate=200") as tip:

@@ -51,6 +51,7 @@ def test_a_tracked_line_stays_ambiguous_until_frames_refute_the_other(
     assert ambiguous >= 3 and silent == 0
 
 
+@pytest.mark.slow
 def test_frames_that_show_the_difference_end_the_ambiguity(
     cells: Layout, wrong_twins: Sequence[Twin]
 ) -> None:
@@ -87,6 +88,7 @@ def test_a_thin_cable_is_looked_for_everywhere(
     assert trusted > 50 and beyond <= most * trusted
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", [HalfPlane(1.0, 20.0), Cable(1.0, 20.0)])
 def test_more_light_than_at_the_tare_is_flagged_and_still_followed(
     cells: Layout, shape: HalfPlane | Cable

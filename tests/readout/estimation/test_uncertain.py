@@ -36,6 +36,7 @@ def by_mm(twin: Twin, scene: Scene) -> np.ndarray:
     )
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("kind", SCENES)
 def test_fingertips_with_cells_off_their_places_spread_as_is_said(
     cells: Layout, twin: Twin, kind: str

@@ -34,6 +34,7 @@ def test_record_ends_whole_when_it_is_interrupted(tmp_path: Path, number: int, s
     assert said == f"{len(frames)} frames recorded\n" and len(frames) > 20
 
 
+@pytest.mark.slow
 def test_record_goes_on_without_its_terminal_where_nohup_has_asked_for_it(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     command = ["nohup", sys.executable, "-m", "lumitip.cli", "record"]

@@ -252,6 +252,7 @@ def test_a_recording_that_begins_anew_has_newer_stamps(make_node: Make, tmp_path
     assert stamps_s(f"replay://{path}?speed=0") == pytest.approx(kept, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_diagnostics_take_no_frame_from_a_recording_that_waits(
     make_node: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -266,6 +267,7 @@ def test_diagnostics_take_no_frame_from_a_recording_that_waits(
     wait_until(lambda: node.failure and len(node.published["~/values"]) > 25)  # of 30
 
 
+@pytest.mark.slow
 def test_deactivating_ends_the_thread_also_of_a_recording_that_waits(
     slow: Any, make_node: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

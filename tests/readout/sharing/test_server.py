@@ -165,6 +165,7 @@ def test_a_port_that_is_taken_says_who_has_it(serve) -> None:
         serve(port=70000)
 
 
+@pytest.mark.slow
 def test_a_port_of_another_program_is_taken(serve) -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]

@@ -53,6 +53,7 @@ def test_the_finger_moves_as_commanded_with_lag_and_latency() -> None:
     assert not np.array_equal(moved[2], first)
 
 
+@pytest.mark.slow
 def test_what_is_seen_is_where_the_truth_says() -> None:
     from lumitip.estimation import PoseEstimator
 

@@ -94,6 +94,7 @@ def test_a_narrow_hole_makes_its_cell_dimmer(layout: Layout) -> None:
     assert 0.4 * usual < other < 0.9 * usual
 
 
+@pytest.mark.slow
 def test_every_way_to_compute_a_scene_knows_the_sizes(layout: Layout) -> None:
     """Table, raster and single rays: an edge alone, with a second sheet, and as a polygon."""
     twin, alike = Twin(sized(layout, SIZES)), Twin(layout)

@@ -2,8 +2,8 @@
 named."""
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from lumitip_fab.config.automatic import AUTO, FOLLOWING, automatic_fields
 from lumitip_fab.config.messages import brief
@@ -65,7 +65,7 @@ def plan_of(verdict: Verdict) -> Plan:
             return Plan((Step(steps[0].message, tuple(enough)),), True)
     if not _accepted(verdict, [step.remedies[0] for step in steps]):
         return Plan(tuple(steps), False)
-    return Plan(_needed(verdict, steps), True)
+    return Plan(_smallest(verdict, _needed(verdict, steps)), True)
 
 
 def _each_enough(verdict: Verdict, steps: list[Step]) -> Iterator[Remedy]:
@@ -79,9 +79,20 @@ def _each_enough(verdict: Verdict, steps: list[Step]) -> Iterator[Remedy]:
             yield _nearest(verdict, remedy)
 
 
-def _nearest(verdict: Verdict, remedy: Remedy) -> Remedy:
-    """The accepted value nearest to the file's own: the search kept other automatic values as they
-    were, and with new ones a smaller change can be enough."""
+def _smallest(verdict: Verdict, steps: tuple[Step, ...]) -> tuple[Step, ...]:
+    """The steps, each with its first change as small as the others allow."""
+    firsts = [step.remedies[0] for step in steps]
+    for at, remedy in enumerate(firsts):
+        firsts[at] = _nearest(verdict, remedy, [*firsts[:at], *firsts[at + 1 :]])
+    return tuple(
+        replace(step, remedies=(first, *step.remedies[1:]))
+        for step, first in zip(steps, firsts, strict=True)
+    )
+
+
+def _nearest(verdict: Verdict, remedy: Remedy, others: Sequence[Remedy] = ()) -> Remedy:
+    """The accepted value nearest to the file's own, with other changes made: the search kept
+    automatic values as they were, and with new ones a smaller change can be enough."""
     step = (
         automatic_fields()[remedy.field].step
         if remedy.field in automatic_fields()
@@ -94,7 +105,7 @@ def _nearest(verdict: Verdict, remedy: Remedy) -> Remedy:
     while refused - found > 1:
         middle = (found + refused) // 2
         nearer = type(value)(round(value + math.copysign(middle * step, was - value), 6))
-        if _accepted(verdict, [Remedy(remedy.field, nearer, was)]):
+        if _accepted(verdict, [Remedy(remedy.field, nearer, was), *others]):
             found, remedy = middle, Remedy(remedy.field, nearer, was)
         else:
             refused = middle
@@ -108,14 +119,11 @@ def _step_of(field: str) -> float:
 
 
 def _needed(verdict: Verdict, steps: list[Step]) -> tuple[Step, ...]:
-    """The steps without redundant ones, whose rule another step fixes too."""
+    """The steps without redundant ones, whose rule the others fix too."""
     kept = list(steps)
-    for step in steps[:-1]:
+    for step in steps:
         others = [other for other in kept if other is not step]
-        fields = {other.remedies[0].field for other in others}
-        if fields & {r.field for r in step.remedies} and _accepted(
-            verdict, [other.remedies[0] for other in others]
-        ):
+        if others and _accepted(verdict, [other.remedies[0] for other in others]):
             kept = others
     return tuple(kept)
 

@@ -28,7 +28,7 @@ def _consumed(config: Input, of: Assembled) -> Iterator[Used]:
     p, primed = config.parameters, config.parts.mould.primer is not None
     inserts = len(of.inserts)
     yield Used("solder", "wires, and parts that are not placed", SOLDER_G, "g")
-    if any(part.kind == "module" for board in of.auxiliary_boards for part in board.components):
+    if any(board.module for board in of.auxiliary_boards):
         yield Used("flux pen", "pads under the module", 1, "piece")
     # The place of the glue, mould, plate and board before primer or casting, and a smooth film.
     wipes = FINGERS * (3 + inserts)

@@ -50,6 +50,8 @@ INSERT_MM = 120.0
 A4_MM = (210.0, 297.0)
 CUT_MM = 5.0
 """Of a sheet, from one insert to the next."""
+ROUND_MM = 400.0
+"""Round a gripper, with the knot (assumed)."""
 TIE_LOCK_MM = 25.0
 """Of a cable tie, for its lock and to pull at."""
 
@@ -89,7 +91,8 @@ def derive_supplies(config: Input, of: Assembled) -> tuple[Used, ...]:
 
 
 def _tied(of: Assembled) -> Iterator[Used]:
-    """Thread of the cables' strain relief, and of the boards on bendable plates."""
+    """Thread of the cables' strain relief, of the boards on bendable plates, and of a controller's
+    board that no holder has."""
     ties = [tie for finger in of.fingers for tie in finger.ties]
     length = sum(_loop_mm(*tie.holes, of.stack.pcb_mm) for tie in ties)
     outside = [tie for board in of.auxiliary_boards for tie in board.ties]
@@ -101,6 +104,9 @@ def _tied(of: Assembled) -> Iterator[Used]:
             pairs = zip(finger.holes[::2], finger.holes[1::2], strict=False)
             length += sum(_loop_mm(one, other, through) for one, other in pairs)
         where += ", boards on their plates"
+    if not of.holders and any(board.name == "breakout" for board in of.auxiliary_boards):
+        length += 2 * ROUND_MM
+        where += ", controller's board beside the gripper"
     if length:
         yield Used("waxed thread", where, length / 1000, "m")
 
@@ -112,8 +118,7 @@ def _loop_mm(one: Point, other: Point, through_mm: float) -> float:
 
 def _held(of: Assembled) -> Iterator[Used]:
     """Cable ties: loops round the gripper through the lugs of the holder's arms, at the lugs of
-    fingers and holder, without lugs round a cable that no thread holds, and at the controller's
-    board where no holder has it."""
+    fingers and holder, and without lugs round a cable that no thread holds."""
     count = 0
     for holder in of.holders:
         each = max(2, math.ceil(holder.tie_loop_mm / (TIE_MM - TIE_LOCK_MM)))
@@ -122,10 +127,8 @@ def _held(of: Assembled) -> Iterator[Used]:
     lugs = sum(len(holder.lugs) for holder in of.holders)
     where = ["holder round the gripper"] * bool(count) + ["cables at the gripper"] * bool(loose)
     where += ["cables at the holder"] * bool(lugs)
-    beside = 0 if of.holders else 2 * sum(b.name == "breakout" for b in of.auxiliary_boards)
-    where += ["controller's board beside the gripper"] * bool(beside)
     if where:
-        yield Used("cable tie", ", ".join(where), count + len(loose) + lugs + beside, "piece")
+        yield Used("cable tie", ", ".join(where), count + len(loose) + lugs, "piece")
 
 
 def _plugged(config: Input, of: Assembled) -> Iterator[Used]:
