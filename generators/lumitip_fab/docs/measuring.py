@@ -23,6 +23,7 @@ def measuring(design: Design) -> str:
         "measured_first",
         rows="\n".join(_rows(design)),
         title=as_written(mount.title),
+        drawn=_text("measured_drawn", gripper=mount.gripper) if _of_gripper(design) else "",
         written=_text("measured_in", places=" or ".join(places)) if places else "",
         body=_text("measured_body") if _body(design) else "",
         gripper_cable="".join(gripper_cable(design) for _ in design.flanges),
