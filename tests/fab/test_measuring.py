@@ -118,7 +118,7 @@ def test_the_slice_is_tried_on_the_gripper_before_the_backings_are_printed(
     text = re.sub(r"<[^>]*>", "", (folder / HTML).read_text(encoding="utf-8"))
     words = " ".join(text.split())
     work = ["Measure your gripper", "for each PCB fab", "on the gripper: try its", "print the rest"]
-    measured = "as sold, 1.6 mm is 1.44 to 1.76 mm. Is one thicker than 1.65 mm" in words
+    measured = "as sold, 1.6 mm is 1.44 to 1.76 mm. If one is thicker than 1.65 mm" in words
     assert measured == ("must not stand above it" in words) == (preset != "flex")
     assert sorted(work, key=words.index) == work
     seat = "pins and seat" if read_design(folder / "design.json").mount.pin_u_mm else "seat"
