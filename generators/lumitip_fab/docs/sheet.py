@@ -50,7 +50,14 @@ class _Layout(NamedTuple):
 
 _LAYOUTS = tuple(
     _Layout(*each)
-    for each in ((1.0, 1.0, 2), (0.9, 0.9, 2), (0.9, 0.9, 4), (0.8, 0.7, 4), (0.7, 0.5, 4))
+    for each in (
+        (1.0, 1.0, 2),
+        (0.9, 0.9, 2),
+        (0.9, 0.9, 4),
+        (0.8, 0.7, 4),
+        (0.7, 0.5, 4),
+        (0.6, 0.5, 4),
+    )
 )
 """From the largest to the smallest, which is taken where that saves a page: a picture of pixels has
 no words to read."""

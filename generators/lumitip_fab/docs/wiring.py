@@ -90,7 +90,7 @@ def _soldered(design: Design) -> str:
     return passage(_TEXTS, "soldered").format(
         but=", but for the flange's" * any(board.module for board in design.auxiliary_boards),
         ties_needed=", waxed thread" * any(_boards_with_ties(design).values()),
-        ties=_tied(design) + _lugged(design),
+        ties=_tied(design),
         power=_power(design),
         weak=f"{pins}.\n\n" if (pins := pulled_up(design.wiring)) else "",
     )
@@ -130,24 +130,13 @@ def _tied(design: Design) -> str:
     loose = [finger.name for finger in design.fingers if not finger.ties]
     held = "hold that cable to the gripper, near the finger"
     if design.mount.lugs:
-        held = "there the tie at the finger's lug, below, holds the cable"
+        held = "there the tie at the finger's lug holds the cable"
     return passage(_TEXTS, "tied").format(
         boards=listed(tied),
         hole_mm=ties[tied[0]][0].hole_mm,
         thread_mm=THREAD_MM,
         loose=passage(_TEXTS, "loose").format(boards=listed(loose), held=held) if loose else "",
     )
-
-
-def _lugged(design: Design) -> str:
-    """The lugs that cable ties go through; empty where no part has any."""
-    held = [holder.name for holder in design.holders if holder.lugs]
-    named = ["the fingers"] * bool(design.mount.lugs) + [f"the {name}" for name in held]
-    lugs = (*design.mount.lugs, *(lug for holder in design.holders for lug in holder.lugs))
-    if not lugs:
-        return ""
-    wide, thick = lugs[0].tie_mm
-    return passage(_TEXTS, "lugged").format(parts=listed(named), wide=wide, thick=thick)
 
 
 def listed(names: list[str]) -> str:
