@@ -105,8 +105,7 @@ def test_what_is_outside_touches_no_finger(keys: Keys) -> None:
     after = keys("[breakout]\nhole_spacing_mm = 34.0\n")
     boards = {"other_board", "models", "wiring"}  # all boards are read there
     assert changed(keys(), after) == {*boards, "holder"}
-    # The wiring note has the lugs of the holder.
-    assert changed(keys(), keys("[holder]\nbody_mm = 76.0\n")) == {"holder", "wiring"}
+    assert changed(keys(), keys("[holder]\nbody_mm = 76.0\n")) == {"holder"}
 
 
 def test_lengths_of_wires_touch_the_wiring_alone(keys: Keys) -> None:

@@ -107,7 +107,7 @@ def test_the_manual_quotes_it_where_the_mask_is_laid(design: Resolved) -> None:
     text = " ".join(steps["Wrap the finger"].split())
     assert f"Both masks may be off their fingers by {shift.most_mm:g} mm, in any direction" in text
     assert "simulated" in text
-    assert "The parts below are no reference" in text
+    assert "For this figure the parts below are no reference" in text
 
 
 def test_the_manual_quotes_the_goals_of_the_stored_record(design: Resolved) -> None:
