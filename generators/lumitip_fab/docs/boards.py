@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Packages
 from lumitip_fab.design.boards import GLUE_FILM_MM, thickness_off_mm
 from lumitip_fab.docs.bill import TESTED
-from lumitip_fab.docs.protection import has_own_step, protection_note
+from lumitip_fab.docs.protection import boards_of_later, protection_note
 from lumitip_fab.docs.wiring import listed
 from lumitip_fab.pipeline.artefact import Files
 from lumitip_fab.text import as_written, passage
@@ -20,7 +20,6 @@ def ordering(design: Design, files: Files) -> str:
     """The step up to the order: polarity of the parts, panels, what the zips hold."""
     names = ("emitter", "receiver", *(board.name for board in design.auxiliary_boards))
     polarity = polarity_test(design.packages, design.fingers)
-    own = any(has_own_step(board, design) for board in design.auxiliary_boards)
     return _text(
         "boards_ordered",
         tester="multimeter, sunlight or a halogen lamp, " * bool(polarity),
@@ -28,14 +27,15 @@ def ordering(design: Design, files: Files) -> str:
         panels=_panels(design),
         polarity=polarity,
         unplaced=_unplaced(files),
-        elsewhere=_text("shown_later") if own else "",
+        elsewhere=_text("shown_later") if boards_of_later(design) else "",
         stopped=_text("stopped") * bool(polarity),
     )
 
 
 def soldering(design: Design, files: Files) -> str:
     """The step that solders and measures the boards."""
-    auxiliary = [board for board in design.auxiliary_boards if not has_own_step(board, design)]
+    later = boards_of_later(design)
+    auxiliary = [board for board in design.auxiliary_boards if board not in later]
     sunk = design.stack.sunk
     shown = [*_finger_faces(design), *(face for board in auxiliary for face in faces(board))]
     behind = any(part.side == "back" for part in design.emitter.parts)

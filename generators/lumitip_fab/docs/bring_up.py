@@ -4,8 +4,7 @@ import math
 from collections.abc import Iterator
 
 from lumitip_fab.design import Cabling, Design
-from lumitip_fab.docs.protection import ends_of_fingers
-from lumitip_fab.docs.wiring import fed
+from lumitip_fab.docs.wiring import ends_of_fingers, fed
 from lumitip_fab.text import passage
 
 

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from lumitip_fab.design import Design
 from lumitip_fab.design.cabling import Terminal, front_headers
+from lumitip_fab.docs.wiring import boards_with_ties
 from lumitip_fab.text import passage
 
 
@@ -22,8 +23,7 @@ def cable_ways(design: Design) -> str:
 
 def _held(design: Design, end: Terminal) -> Iterator[str]:
     """Threads, ties and sockets that hold an end, from its pads on."""
-    ties = {f.name: f.ties for f in design.fingers}
-    ties |= {board.name: board.ties for board in design.auxiliary_boards}
+    ties = boards_with_ties(design)
     for tie in ties.get(end.board, ()):
         if tie.ref == end.connector:
             yield f"thread beside {end.connector}"

@@ -23,9 +23,9 @@ from lumitip_fab.docs.measuring import measuring
 from lumitip_fab.docs.mounting import mounting_steps
 from lumitip_fab.docs.orders import amount, money
 from lumitip_fab.docs.page import html_page
-from lumitip_fab.docs.protection import ends_of_fingers, has_own_step
+from lumitip_fab.docs.protection import boards_of_later
 from lumitip_fab.docs.sheet import pdf_sheets
-from lumitip_fab.docs.wiring import listed, wiring_steps
+from lumitip_fab.docs.wiring import ends_of_fingers, listed, wiring_steps
 from lumitip_fab.docs.wrapping import mask_facts, wrapping_steps
 from lumitip_fab.pipeline.artefact import Artefact, Files
 from lumitip_fab.text import as_written, passage
@@ -47,7 +47,7 @@ def manual_text(design: Design, files: Files) -> str:
         *(coupling_step(design, flange) for flange in design.flanges),
         ordering(design, files),
         soldering(design, files),
-        *(flange_board_step(design, f) for f in design.flanges if not _board_has_own_step(design)),
+        *(flange_board_step(design, f) for f in design.flanges if not boards_of_later(design)),
         _printed(design, files),
         *(step.section() for step in wiring_steps(design)),
         *bring_up_steps(design, _controllers_board(design, files)),
@@ -156,16 +156,11 @@ def _controllers_board(design: Design, files: Files) -> str:
     return pictures([(b.name, "front") for b in design.auxiliary_boards if b.name in near], files)
 
 
-def _board_has_own_step(design: Design) -> bool:
-    return any(has_own_step(board, design) for board in design.auxiliary_boards)
-
-
 def _flange_steps(design: Design, flange: Flange, files: Files) -> Iterator[str]:
     """The flange's board with its pictures, unless it was tried before its wires went in; then the
     flange itself."""
-    own = [board for board in design.auxiliary_boards if has_own_step(board, design)]
-    if own:
-        shown = pictures((face for board in own for face in faces(board)), files)
+    if later := boards_of_later(design):
+        shown = pictures((face for board in later for face in faces(board)), files)
         yield flange_board_step(design, flange, shown)
     yield flange_step(design, flange)
 

@@ -8,7 +8,7 @@ from lumitip_fab.design import AuxiliaryBoard, Design, Flange
 from lumitip_fab.design.cabling import INPUT_END, front_headers, gripper_headers, plugged_headers
 from lumitip_fab.design.electrical import Indicator
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
-from lumitip_fab.docs.protection import TVS, has_own_step, protection_note
+from lumitip_fab.docs.protection import TVS, boards_of_later, protection_note
 from lumitip_fab.docs.steps import numbered
 from lumitip_fab.docs.wiring import SLOT_MM2, listed, pressed
 from lumitip_fab.text import as_written, passage
@@ -33,14 +33,13 @@ def flange_board_step(design: Design, flange: Flange, pictures: str = "") -> str
         flange: whose board it is.
         pictures: of the board, in Markdown, where no other step has them.
     """
-    board = _flange(design)
     return _text(
         "flange_board_step",
         pictures=f"{pictures}\n\n" if pictures else "",
         needs=", ".join(_needs(design)),
         minutes=BOARD_MIN,
         work=numbered(_boarded(design, flange)),
-        protection=protection_note(board, design) if has_own_step(board, design) else "",
+        protection="".join(protection_note(later, design) for later in boards_of_later(design)),
         contacts=_contacts(design),
     )
 
@@ -96,7 +95,7 @@ def _tried(design: Design) -> str:
     raw, board = _raw(design), _flange(design)
     points = [f"{_volts(net)} at the test point {net}" for net in _outputs(design)]
     signs = "".join(_text("lit", lit=lit) for lit in _lights(design))
-    if not has_own_step(board, design):
+    if board not in boards_of_later(design):
         diodes = [part for part in board.components if part.kind == TVS]
         signs += "".join(_text("cold", part=part) for part in diodes)
     return _text("indicator", supply=_volts(raw), raw=raw, outputs=listed(points), signs=signs)

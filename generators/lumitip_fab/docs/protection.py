@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from string import ascii_letters, digits
 
 from lumitip_fab.design import AuxiliaryBoard, Component, Design
-from lumitip_fab.docs.wiring import listed
+from lumitip_fab.docs.wiring import ends_of_fingers, listed
 from lumitip_fab.text import passage
 
 ESD, TVS, FUSE, MOSFET = "esd diode", "tvs diode", "fuse", "transistor"
@@ -18,17 +18,11 @@ def protection_note(board: AuxiliaryBoard, design: Design) -> str:
     return "".join(f"\n\n{text}" for text in _of(board, design))
 
 
-def has_own_step(board: AuxiliaryBoard, design: Design) -> bool:
-    """Whether a board is shown and tested after the first test: the flange's, unless wires of the
+def boards_of_later(design: Design) -> list[AuxiliaryBoard]:
+    """Boards that are shown and tested after the first test: the flange's, unless wires of the
     fingers end on it."""
-    return board.name == "flange" and board.name not in ends_of_fingers(design)
-
-
-def ends_of_fingers(design: Design) -> set[str]:
-    """Where the wires of the fingers end: names of boards, or `"controller"`."""
-    fingers = {finger.name for finger in design.fingers}
-    cables = [cable for cable in design.cabling.cables if cable.start.board in fingers]
-    return {wire.end.board for cable in cables for wire in cable.wires} - {"supply"}
+    near = ends_of_fingers(design)
+    return [b for b in design.auxiliary_boards if b.name == "flange" and b.name not in near]
 
 
 def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
@@ -55,8 +49,8 @@ def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
         melts = "".join(_text("protected_fuse", fuse=fuse) for fuse in kinds[FUSE])
         where = "the first test"
         if board.name == "flange":
-            own = has_own_step(board, design)
-            where = "its test" if own else 'step "Try the flange board"'
+            later = board in boards_of_later(design)
+            where = "its test" if later else 'step "Try the flange board"'
         ends = "".join(
             _text("protected_reversed", part=mosfet, supply_v=design.wiring.supply_v)
             for mosfet in kinds[MOSFET]

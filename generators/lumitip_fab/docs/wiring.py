@@ -89,7 +89,7 @@ def _cut(design: Design) -> str:
 def _soldered(design: Design) -> str:
     return passage(_TEXTS, "soldered").format(
         but=", but for the flange's" * any(board.module for board in design.auxiliary_boards),
-        ties_needed=", waxed thread" * any(_boards_with_ties(design).values()),
+        ties_needed=", waxed thread" * any(boards_with_ties(design).values()),
         ties=_tied(design),
         power=_power(design),
         weak=f"{pins}.\n\n" if (pins := pulled_up(design.wiring)) else "",
@@ -115,7 +115,7 @@ def _mark(colour: str, known: tuple[str, ...]) -> str:
     return f"{COLOURS[ground][0]}, marked {' and '.join(COLOURS[code][0] for code in marks)}"
 
 
-def _boards_with_ties(design: Design) -> dict[str, tuple[Tie, ...]]:
+def boards_with_ties(design: Design) -> dict[str, tuple[Tie, ...]]:
     """Pairs of holes for a thread, by the name of their board."""
     ties = {f.name: f.ties for f in design.fingers}
     return ties | {board.name: board.ties for board in design.auxiliary_boards}
@@ -123,7 +123,7 @@ def _boards_with_ties(design: Design) -> dict[str, tuple[Tie, ...]]:
 
 def _tied(design: Design) -> str:
     """How the cables are held; empty where no board has holes for a thread."""
-    ties = _boards_with_ties(design)
+    ties = boards_with_ties(design)
     tied = [name for name, found in ties.items() if found]
     if not tied:
         return ""
@@ -178,6 +178,13 @@ def _fed_by(design: Design) -> str:
         passage(_TEXTS, "at_flange").format(header=header, contacts=contacts)
         for header in sorted(headers)
     )
+
+
+def ends_of_fingers(design: Design) -> set[str]:
+    """Where the wires of the fingers end: names of boards, or `"controller"`."""
+    fingers = {finger.name for finger in design.fingers}
+    cables = [cable for cable in design.cabling.cables if cable.start.board in fingers]
+    return {wire.end.board for cable in cables for wire in cable.wires} - {"supply"}
 
 
 def pressed(cabling: Cabling) -> str:

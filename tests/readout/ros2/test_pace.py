@@ -5,14 +5,12 @@ import sys
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from lumitip import Fingertip
-from lumitip.recording import Reader, Writer
+from ros_pace import alive, delay, diagnosed, recorded, wait_until
 
 Make = Callable[..., Any]
 
@@ -25,30 +23,6 @@ def slow(make_node: Make, monkeypatch: pytest.MonkeyPatch) -> Any:
     delay(node, monkeypatch, 0.012)
     node.on_activate(None)
     return node
-
-
-def delay(node: Any, monkeypatch: pytest.MonkeyPatch, work_s: float) -> None:
-    track = node._track
-
-    def slowly(values: Any) -> Any:
-        time.sleep(work_s)
-        return track(values)
-
-    monkeypatch.setattr(node, "_track", slowly)
-
-
-def diagnosed(node: Any) -> tuple[bytes, str, dict[str, str]]:
-    """Level, text and figures."""
-    node.diagnose()
-    (status,) = node.published["/diagnostics"][-1].status
-    return status.level, status.message, {pair.key: pair.value for pair in status.values}
-
-
-def wait_until(true: Callable[[], Any]) -> None:
-    until = time.monotonic() + 20.0
-    while not true():
-        assert time.monotonic() < until
-        time.sleep(0.01)
 
 
 def newest_age_s(node: Any) -> float:
@@ -192,82 +166,6 @@ def test_an_untared_finger_is_a_warning_until_it_is_tared(make_node: Make) -> No
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("speed", ["", "?speed=0", "?speed=1"])
-def test_a_recording_plays_from_its_first_frame_once_the_node_is_active(
-    make_node: Make, tmp_path: Path, speed: str
-) -> None:
-    path = recorded(tmp_path / "run.mcap", 40)
-    node = make_node(url=f"replay://{path}{speed}")
-    node.on_configure(None)
-    time.sleep(0.3)
-    assert diagnosed(node)[:2] == (b"\0", "the recording begins once the node is active")
-    assert not node.failure, "it does not play yet"
-    node.on_activate(None)
-
-    def skipped() -> int:
-        return int(diagnosed(node)[2]["not published"])
-
-    wait_until(lambda: node.failure and len(node.published["~/estimate"]) == 40 - skipped())
-    node.on_deactivate(None)
-    assert len(node.published["~/values"]) == 40 - skipped()
-    assert skipped() < (1 if "speed=0" in speed else 10), "a busy computer may be behind"
-
-
-def slow_node(make_node: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """An active node that is slower than a recording of 30 frames at speed 0."""
-    node = make_node(url=f"replay://{recorded(tmp_path / 'a.mcap', 30)}?speed=0", estimate=False)
-    node.on_configure(None)
-    delay(node, monkeypatch, 0.02)
-    node.on_activate(None)
-    return node
-
-
-def test_a_slow_node_publishes_every_frame_of_a_recording_at_speed_0(
-    make_node: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    node = slow_node(make_node, tmp_path, monkeypatch)
-    wait_until(lambda: len(node.published["~/values"]) == 30)
-    assert diagnosed(node)[2]["not published"] == "0"
-
-
-def test_a_recording_that_begins_anew_has_newer_stamps(make_node: Make, tmp_path: Path) -> None:
-    """tf2 ignores what is older than the last transform."""
-
-    def stamps_s(url: str) -> list[float]:
-        node = make_node(url=url, estimate=False)
-        node.on_configure(None)
-        node.on_activate(None)
-        published = node.published["~/values"]
-        wait_until(lambda: len(published) + node._published.skipped == 10)
-        node.on_cleanup(None)
-        stamps = [m.header.stamp for m in published]
-        return [stamp.sec + stamp.nanosec * 1e-9 for stamp in stamps]
-
-    path = recorded(tmp_path / "run.mcap", 10)
-    began_s = time.time()
-    first, again = stamps_s(f"replay://{path}"), stamps_s(f"replay://{path}?speed=2")
-    assert began_s < first[0] and first[-1] < again[0] and again[-1] < time.time()
-    assert first == sorted(first) and again == sorted(again)
-    kept = [frame.t_wall for frame in Reader(path)]
-    assert stamps_s(f"replay://{path}?speed=0") == pytest.approx(kept, abs=1e-6)
-
-
-@pytest.mark.slow
-def test_diagnostics_take_no_frame_from_a_recording_that_waits(
-    make_node: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    node = slow_node(make_node, tmp_path, monkeypatch)
-    wait_until(lambda: len(node.published["~/values"]) >= 2)
-    node.on_deactivate(None)
-    for _ in range(30):
-        assert diagnosed(node)[:2] == (b"\0", "the node is not active")
-        time.sleep(0.01)
-    assert not node.failure, "it does not play on"
-    node.on_activate(None)
-    wait_until(lambda: node.failure and len(node.published["~/values"]) > 25)  # of 30
-
-
-@pytest.mark.slow
 def test_deactivating_ends_the_thread_also_of_a_recording_that_waits(
     slow: Any, make_node: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -286,18 +184,3 @@ def test_deactivating_ends_the_thread_also_of_a_recording_that_waits(
     wait_until(lambda: node.failure and len(node.published["~/values"]) > 25)  # of 30
     node.on_cleanup(None)
     assert not alive()
-
-
-def alive() -> list[str]:
-    return [t.name for t in threading.enumerate() if t.name == "lumitip-publisher"]
-
-
-def recorded(path: Path, number: int, gap_s: float = 0.0) -> Path:
-    """A recording of so many frames, 20 ms apart; the last one comes later by `gap_s`."""
-    with Fingertip.open("twin://cable") as tip, Writer(path, tip.layout, device_id="x") as writer:
-        frame = tip.read(timeout=5.0)
-        for seq in range(number):
-            later_s = seq * 0.02 + (gap_s if seq == number - 1 else 0.0)
-            t, t_wall = frame.t + later_s, frame.t_wall + later_s
-            writer.write(replace(frame, seq=seq, t=t, t_wall=t_wall))
-    return path

@@ -11,8 +11,6 @@ from lumitip_fab.design import Clamp, Flange, Holder, Mount
 from lumitip_fab.design.mould import MOULDS
 from lumitip_fab.design.ordering import Bought, Pack, PartPrice, Purchase
 
-_BY_STEP = "length by step Look at the coupling"  # of the manual
-
 
 def derive_purchase(
     config: Input,
@@ -156,19 +154,14 @@ def _of_flange(config: Input, flange: Flange, packs: Mapping[str, Pack]) -> list
     screw = f"{flange.screw} x {length:g} countersunk screw"
     pin = f"{flange.pin_mm:g} x {flange.pin_length_mm:g} parallel pin"
     bolt, nut = f"{flange.bolt} socket head screw", f"{flange.screw} nut"
+    ordered = f"{bolt}, length by step Look at the coupling"
     longer = f"flange bolts, {flange.top_z_mm:.1f} mm longer than the gripper's own"
     where = "board of the flange"
     rows = (
         (screw, "ISO 7046", where, count, f"{flange.screw} screw"),
         (nut, "ISO 4032", where, count, nut),
         (pin, "ISO 2338", "flange to coupling, glued in", 1, "parallel pin"),
-        (
-            f"{bolt}, {_BY_STEP}",
-            "ISO 4762",
-            longer,
-            len(flange.bolts),
-            bolt,
-        ),
+        (ordered, "ISO 4762", longer, len(flange.bolts), bolt),
     )
     return [_fastener(*row, packs) for row in rows]
 
