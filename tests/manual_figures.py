@@ -133,8 +133,12 @@ def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
     boards = [*names, *(auxiliary.name for auxiliary in design.auxiliary_boards)]
     wanted = {"assembly/receiver_exploded.svg", "assembly/system.svg", "wiring/wiring.svg"}
     wanted |= {f"mask/{name}_mask.svg" for name in names}
-    bench = ("plate", "facing", "board", "mould", "drop")
-    work = (*bench, "cable", "filled", "lowered", "clamped", "lifted")
+    bench = ("measured", "lengths", "plate", "facing", "board", "mould", "drop")
+    work = (*bench, "cable", "filled", "lowered", "clamped", "lifted", "card", "skin")
+    if design.packages.unmarked:
+        wanted.add("manual/marks.svg")
+    if design.gauge_cards:
+        wanted.add("manual/gauge.svg")
     wanted |= {f"manual/{name}.svg" for name in work}
     wanted |= {f"manual/{name}_folded.svg" for name in names}
     for flange in design.flanges:

@@ -71,6 +71,15 @@ def test_each_step_has_a_page(built: Callable[[str], Path], preset: str) -> None
 
 
 @pytest.mark.parametrize("preset", PRESETS)
+def test_each_step_but_the_list_of_parts_has_a_picture(
+    built: Callable[[str], Path], preset: str
+) -> None:
+    text = (built(preset) / HTML).read_text(encoding="utf-8")
+    steps = re.findall(r"<h2>\d+\. (.*?)</h2>(.*?)(?=<h2>|</body>)", text, re.DOTALL)
+    assert [unescape(title) for title, step in steps if "<img" not in step] == ["Parts"]
+
+
+@pytest.mark.parametrize("preset", PRESETS)
 def test_steps_have_the_order_of_the_work(built: Callable[[str], Path], preset: str) -> None:
     text = (built(preset) / HTML).read_text(encoding="utf-8")
     titles = re.findall(r"<h2>\d+\. (.*?)</h2>", text)

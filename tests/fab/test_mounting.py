@@ -34,8 +34,15 @@ def steps(design: Design) -> str:
 
 def work(design: Design) -> str:
     """The steps of flange and mounting, with their lines."""
-    made = (coupling_step, flange_board_step, flange_step)
-    flanges = (step(design, flange) for flange in design.flanges for step in made)
+    flanges = (
+        step
+        for flange in design.flanges
+        for step in (
+            coupling_step(design, flange),
+            flange_board_step(design, flange, ""),
+            flange_step(design, flange),
+        )
+    )
     return "\n\n".join([*flanges, *mounting_steps(design)])
 
 
@@ -56,7 +63,7 @@ def test_each_contact_of_a_socket_has_what_it_carries_and_its_wire(written: Writ
         design = written({}, preset)
         board = next(b for b in design.auxiliary_boards if b.name == "flange")
         (flange,) = design.flanges
-        table = flange_board_step(design, flange).split("### Contacts of the sockets")[1]
+        table = flange_board_step(design, flange, "").split("### Contacts of the sockets")[1]
         rows = re.findall(r"^\| (J\d+) \| (.*?) \| (.*?) \| (.*?) \|$", table, re.MULTILINE)
         shown = {(ref, pin): net for ref, pins, net, _ in rows for pin in pins.split(", ")}
         headers = front_headers(board)

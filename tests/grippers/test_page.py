@@ -16,8 +16,7 @@ from build123d import Location
 from lumitip_fab.catalogue.grippers import Gripper
 from lumitip_fab.config.load import Input, load
 from lumitip_fab.design.frames import mount_to_sensor
-from lumitip_fab.grippers.dimensions import LETTER_MM, WORDS_MM
-from lumitip_fab.grippers.drawing import BODY_MM, SCALE, body_drawing, coupling_drawing
+from lumitip_fab.grippers.drawing import BODY_MM, body_drawing
 from lumitip_fab.grippers.figures import figures, value_of
 from lumitip_fab.grippers.page import page
 from lumitip_fab.grippers.trial import design_with, example
@@ -25,6 +24,8 @@ from lumitip_fab.parts.backing import backing_solid
 from lumitip_fab.parts.export import mesh
 from lumitip_fab.parts.gauge import gauge_solid
 from lumitip_fab.parts.shapes import placed
+from lumitip_fab.scenes.coupling_view import SCALE, coupling_view
+from lumitip_fab.scenes.dimensions import LETTER_MM, WORDS_MM
 
 Box = tuple[float, float, float, float]
 NOT_DRAWN = {"force_n", "envelope.mass_kg", "envelope.payload_kg"}
@@ -36,8 +37,10 @@ def gripper_of(name: str, config: Input) -> Gripper:
 
 def drawings(name: str, config: Input) -> dict[str, str]:
     gripper = gripper_of(name, config)
-    gauge = mesh(gauge_solid(design_with(config, name, gripper)))
-    return {"coupling": coupling_drawing(gripper, gauge), "body": body_drawing(gripper)}
+    held = design_with(config, name, gripper)
+    known = {f.name for f in figures() if value_of(gripper, f.name) is not None}
+    coupling = coupling_view(held.mount, mesh(gauge_solid(held)), known)
+    return {"coupling": coupling, "body": body_drawing(gripper)}
 
 
 def names(svg: str) -> Iterator[tuple[str, Box]]:

@@ -35,6 +35,9 @@ STRANDED = 1.15  # diameter of strands over that of solid copper of the same sec
 THREAD_MM = 0.5
 """Waxed thread of the strain relief: the product in `packs.toml`."""
 
+STRIP_MM = 4.0
+"""Bare end of a wire: through a board, with what is cut off above the joint (assumed)."""
+
 
 def outer_mm(section_mm2: float) -> float:
     """Diameter of a wire with its insulation."""

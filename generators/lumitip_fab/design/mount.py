@@ -7,7 +7,10 @@ from lumitip_fab.catalogue.record import TRUSTED
 from lumitip_fab.design.making import Letter
 from lumitip_fab.design.shape import Box, Point
 from lumitip_fab.design.tie_lug import TieLug
+from lumitip_fab.text import table_of
 
+NOT_PRINTED = {"force_n", "stroke_mm", "height_mm", "robot_mm", "iso"}
+"""Figures of gripper and coupling that no printed part rests on."""
 _FLARE_THINS = 0.4  # of its depth at the ramp, where a flare ends: the bending moment thins so
 
 
@@ -84,6 +87,12 @@ class Mount:
     """Greatest force of the gripper; 0 where it is not known."""
     unsure: tuple[Unsure, ...]
     """Figures of the gripper's entry to measure."""
+
+    @property
+    def to_measure(self) -> tuple[Unsure, ...]:
+        """Those of them that printed parts rest on; a figure that is chosen is not measured."""
+        without = {*table_of("grippers/texts.toml")["chosen"], *NOT_PRINTED}
+        return tuple(figure for figure in self.unsure if figure.name not in without)
 
     @property
     def flare_end_mm(self) -> float:

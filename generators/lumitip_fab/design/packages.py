@@ -14,6 +14,9 @@ from lumitip_fab.catalogue.electronics import (
 )
 from lumitip_fab.design.boards import Finger
 
+Marked = Led | Photodetector
+"""A part with a mark at one of its ends."""
+
 
 @dataclass(frozen=True)
 class Packages:
@@ -43,15 +46,15 @@ class Packages:
     switch_name: str
 
     @property
-    def unmarked(self) -> dict[str, Led | Photodetector]:
+    def unmarked(self) -> dict[str, Marked]:
         """By its kind, each part whose marked terminal is neither measured nor read from a
         datasheet: one of them is tried before boards are ordered."""
-        parts: dict[str, Led | Photodetector] = {
+        parts: dict[str, Marked] = {
             "LED": self.led,
             "photodetector": self.photodetector,
         }
         return {kind: part for kind, part in parts.items() if not part.mark_is_known}
 
-    def at_cells(self, finger: Finger) -> Led | Photodetector:
+    def at_cells(self, finger: Finger) -> Marked:
         """What emits or detects light on a finger."""
         return self.led if finger.cells_hold.kind == "led" else self.photodetector

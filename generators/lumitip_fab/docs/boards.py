@@ -37,7 +37,9 @@ def soldering(design: Design, files: Files) -> str:
     later = boards_of_later(design)
     auxiliary = [board for board in design.auxiliary_boards if board not in later]
     sunk = design.stack.sunk
-    shown = [*_finger_faces(design), *(face for board in auxiliary for face in faces(board))]
+    tried = set(faces_when_tried(design))
+    shown = [*_finger_faces(design)]
+    shown += [face for board in auxiliary for face in faces(board) if face not in tried]
     behind = any(part.side == "back" for part in design.emitter.parts)
     reflowed = _reflowed(design)
     return _text(
@@ -71,6 +73,17 @@ def faces(board: AuxiliaryBoard) -> Iterator[tuple[str, str]]:
     yield board.name, "front"
     if any(part.side == "back" for part in board.components):
         yield board.name, "back"
+
+
+def faces_when_tried(design: Design) -> Iterator[tuple[str, str]]:
+    """Faces that are shown where the flange's board is tried: of one that is soldered earlier the
+    back, onto which its contacts come."""
+    later = boards_of_later(design)
+    for board in design.auxiliary_boards:
+        if board in later:
+            yield from faces(board)
+        elif board.name in {flange.auxiliary for flange in design.flanges}:
+            yield board.name, "back"
 
 
 def pictures(shown: Iterable[tuple[str, str]], files: Files) -> str:

@@ -6,9 +6,9 @@ from dataclasses import replace
 from itertools import count
 from typing import Any
 
-from lumitip_fab.design import Design, Flange
+from lumitip_fab.design import Design
 from lumitip_fab.design.cabling import supplied_headers
-from lumitip_fab.docs.boards import faces, ordering, pictures, soldering
+from lumitip_fab.docs.boards import faces_when_tried, ordering, pictures, soldering
 from lumitip_fab.docs.bring_up import bring_up_steps
 from lumitip_fab.docs.casting import (
     amounts_of_both,
@@ -47,7 +47,7 @@ def manual_text(design: Design, files: Files) -> str:
         *(coupling_step(design, flange) for flange in design.flanges),
         ordering(design, files),
         soldering(design, files),
-        *(flange_board_step(design, f) for f in design.flanges if not boards_of_later(design)),
+        *_flange_board(design, files, later=False),
         _printed(design, files),
         *(step.section() for step in wiring_steps(design)),
         *bring_up_steps(design, _controllers_board(design, files)),
@@ -56,7 +56,8 @@ def manual_text(design: Design, files: Files) -> str:
             for step in casting_steps(design, design.fingers, _amounts(design, files))
         ),
         *_masked(design, files),
-        *(step for f in design.flanges for step in _flange_steps(design, f, files)),
+        *_flange_board(design, files, later=True),
+        *(flange_step(design, flange) for flange in design.flanges),
         *mounting_steps(design),
         _run(design),
         _kept(design),
@@ -156,13 +157,11 @@ def _controllers_board(design: Design, files: Files) -> str:
     return pictures([(b.name, "front") for b in design.auxiliary_boards if b.name in near], files)
 
 
-def _flange_steps(design: Design, flange: Flange, files: Files) -> Iterator[str]:
-    """The flange's board with its pictures, unless it was tried before its wires went in; then the
-    flange itself."""
-    if later := boards_of_later(design):
-        shown = pictures((face for board in later for face in faces(board)), files)
-        yield flange_board_step(design, flange, shown)
-    yield flange_step(design, flange)
+def _flange_board(design: Design, files: Files, later: bool) -> Iterator[str]:
+    """The test of the flange's board, where it is tried after the first test or before."""
+    if bool(boards_of_later(design)) == later:
+        shown = pictures(faces_when_tried(design), files)
+        yield from (flange_board_step(design, flange, shown) for flange in design.flanges)
 
 
 def _run(design: Design) -> str:
@@ -172,6 +171,7 @@ def _run(design: Design) -> str:
         "run",
         warm_up_min=WARM_UP_MIN,
         minutes=RUN_MIN + ACCEPT_MIN * cards,
+        gauge="\n![The gauge card on the receiver, end E down](manual/gauge.svg)" * cards,
         gauged=", the gauge card, thin sheet metal" * cards,
         supply="the robot's tool output" if design.flanges else "the LEDs' supply",
         accepted="\n" + _text("accepted", accept_min=ACCEPT_MIN).strip() if cards else "",

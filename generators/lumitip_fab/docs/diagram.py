@@ -20,11 +20,11 @@ from lumitip_fab.design import Cable, Cabling, Terminal, Title, Wire
 from lumitip_fab.design.cabling import COLOURS, codes_of
 
 _ROW, _HEAD, _FOOT, _GAP, _TOP = 7.0, 17.0, 3.0, 12.0, 24.0
-_MARGIN, _LABEL = 8.0, 30.0
+_MARGIN, _LABEL = 8.0, 40.0
 _LEFT = (8.0, 44.0)  # edges of the boxes in each column; near, for the manual's page shrinks all
-_MIDDLE = (106.0, 156.0)
-_RIGHT = (218.0, 256.0)
-_SMALL = 3.2  # height of the least letters
+_MIDDLE = (110.0, 162.0)
+_RIGHT = (228.0, 268.0)
+_SMALL = 4.2  # height of the least letters
 _INK, _FAINT, _PAPER = "#1a1a1a", "#5a6b7a", "#f4f6f8"
 _BOLD = 'text-anchor="middle" font-weight="bold"'
 _CENTRED = 'text-anchor="middle"'
@@ -117,7 +117,7 @@ def _boxes(runs: tuple[Run, ...]) -> Iterator[str]:
     if any(_edges(run)[1] == _RIGHT for run in runs):
         receiver, middle = runs[1], sum(_MIDDLE) / 2
         for i, words in enumerate(("the controller", "plugs into", "J1 and J2")):
-            y = receiver.top + _HEAD + 8 + 5 * i
+            y = receiver.top + _HEAD + 8 + 6 * i
             yield _text(middle + 10, y, words, _SMALL, _FAINT, _CENTRED)
 
 
@@ -142,18 +142,18 @@ def _wire(run: Run, wire: Wire) -> Iterator[str]:
             'stroke-dasharray="2 2"/>'
         )
     yield (
-        f'<rect x="{label:g}" y="{start - 2.2:g}" width="{_LABEL:g}" height="4.4" rx="1" '
+        f'<rect x="{label:g}" y="{start - 2.7:g}" width="{_LABEL:g}" height="5.4" rx="1" '
         f'fill="#fff" stroke="{_INK}" stroke-width=".2"/>'
     )
     words = f"{wire.number} {wire.colour}{current}"
-    yield _text(label + _LABEL / 2, start + 1, words, _SMALL, _INK, _CENTRED)
+    yield _text(label + _LABEL / 2, start + 1.4, words, _SMALL, _INK, _CENTRED)
     yield "</g>"
 
 
 def _ends(run: Run) -> Iterator[str]:
     """Pads, the names of their connectors, and what the cable is."""
     cable, middle = run.cable, run.start_x + 6 + _LABEL / 2
-    yield _text(middle, run.top + 8, cable.name, 4.2, _INK, _BOLD)
+    yield _text(middle, run.top + 7, cable.name, 5, _INK, _BOLD)
     yield _text(
         middle,
         run.top + 12.5,
@@ -181,7 +181,7 @@ def _pad(pad: Terminal, x: float, y: float, side: int) -> str:
     """A pad on the edge of a box; its words run into the box, the number next to the edge."""
     words: Iterable[str] = dict.fromkeys((pad.pin, pad.name))
     lines = [
-        _text(x + side * (3 + 7 * i), y + 1.2, word, 3.4, _INK, f'text-anchor="{_anchor(side)}"')
+        _text(x + side * (3 + 7 * i), y + 1.5, word, 4.2, _INK, f'text-anchor="{_anchor(side)}"')
         for i, word in enumerate(words)
     ]
     ring = f'r="1.3" fill="#d9b44a" stroke="{_INK}" stroke-width=".3"'
@@ -200,7 +200,7 @@ def _box(edges: tuple[float, float], top: float, bottom: float, name: str) -> st
     return (
         f'<rect x="{left:g}" y="{top:g}" width="{right - left:g}" height="{bottom - top:g}" '
         f'rx="2" fill="{_PAPER}" stroke="{_INK}" stroke-width=".4"/>'
-        + _text((left + right) / 2, top + 7, name.capitalize(), 4.6, _INK, _BOLD)
+        + _text((left + right) / 2, top + 7, name.capitalize(), 5.2, _INK, _BOLD)
     )
 
 

@@ -25,17 +25,17 @@ def coupling_step(design: Design, flange: Flange) -> str:
     return _text("coupling_step", work=numbered(_looked(design)), lengths=_lengths(flange))
 
 
-def flange_board_step(design: Design, flange: Flange, pictures: str = "") -> str:
+def flange_board_step(design: Design, flange: Flange, pictures: str) -> str:
     """The test of the flange's board.
 
     Args:
         design: with the flange.
         flange: whose board it is.
-        pictures: of the board, in Markdown, where no other step has them.
+        pictures: of the board, in Markdown.
     """
     return _text(
         "flange_board_step",
-        pictures=f"{pictures}\n\n" if pictures else "",
+        pictures=pictures,
         needs=", ".join(_needs(design)),
         minutes=BOARD_MIN,
         work=numbered(_boarded(design, flange)),

@@ -3,19 +3,18 @@
 from collections.abc import Iterator
 
 from lumitip_fab.design import Design, Flange, Unsure
+from lumitip_fab.design.mount import NOT_PRINTED
 from lumitip_fab.docs.flange import gripper_cable
 from lumitip_fab.text import as_written, passage, table_of
 
 _GRIPPERS, _OTHERS = "grippers/texts.toml", "docs/measuring.toml"
 _BODY = "holder.body_mm"
-_NOT_PRINTED = {"force_n", "stroke_mm", "height_mm", "robot_mm", "iso"}
-"""Figures of gripper and coupling that no printed part rests on."""
 
 
 def measuring(design: Design) -> str:
     """The step: each figure that is not sure, with what the design uses, and how to measure it."""
     mount = design.mount
-    places = [f"`[{mount.gripper}]` of `grippers.toml`"] * bool(_of_gripper(design))
+    places = [f"`[{mount.gripper}]` of `grippers.toml`"] * bool(mount.to_measure)
     for flange in design.flanges:
         place = f'`["{flange.coupling}"]` of `couplings.toml`'
         places += [place] * bool(_of_coupling(flange))
@@ -23,7 +22,6 @@ def measuring(design: Design) -> str:
         "measured_first",
         rows="\n".join(_rows(design)),
         title=as_written(mount.title),
-        drawn=_text("measured_drawn", gripper=mount.gripper) if _of_gripper(design) else "",
         written=_text("measured_in", places=" or ".join(places)) if places else "",
         body=_text("measured_body") if _body(design) else "",
         gripper_cable="".join(gripper_cable(design) for _ in design.flanges),
@@ -37,7 +35,7 @@ def _rows(design: Design) -> Iterator[str]:
     bolt = f"{mount.bolt} x {mount.bolt_length_mm:g}, {into_mm:.1f} mm into it"
     yield _row("depth of the gripper's thread", bolt, "unknown", texts["depth"])
     how = table_of(_GRIPPERS)["figures"]
-    for figure in _of_gripper(design):
+    for figure in mount.to_measure:
         yield _row(f"`{figure.name}`", figure.value, figure.confidence, how[figure.name])
     for figure in _body(design):
         yield _row(f"`{figure.name}`", figure.value, figure.confidence, texts["body"])
@@ -47,15 +45,9 @@ def _rows(design: Design) -> Iterator[str]:
             yield _row(f"`{figure.name}`", figure.value, figure.confidence, how_to)
 
 
-def _of_gripper(design: Design) -> list[Unsure]:
-    """Figures that are measured, and that parts are printed by; some are chosen."""
-    without = {*table_of(_GRIPPERS)["chosen"], *_NOT_PRINTED}
-    return [figure for figure in design.mount.unsure if figure.name not in without]
-
-
 def _of_coupling(flange: Flange) -> list[Unsure]:
     """Figures that parts are printed by."""
-    return [figure for figure in flange.unsure if figure.name not in _NOT_PRINTED]
+    return [figure for figure in flange.unsure if figure.name not in NOT_PRINTED]
 
 
 def _body(design: Design) -> list[Unsure]:

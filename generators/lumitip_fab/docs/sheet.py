@@ -22,12 +22,23 @@ from reportlab.platypus import (
     Paragraph,
     SimpleDocTemplate,
     Table,
+    TableStyle,
 )
 from svglib.svglib import svg2rlg
 
 from lumitip_fab.docs.page import markdown
 from lumitip_fab.docs.sheet_pages import MARGIN, MARGIN_HIGH, WIDTH, kept_step
-from lumitip_fab.docs.sheet_styles import BESIDE, BODY, CELL, FIGURE, HEADS, ITEM, LINES, SMALL
+from lumitip_fab.docs.sheet_styles import (
+    BESIDE,
+    BODY,
+    CELL,
+    FIGURE,
+    HEADS,
+    ITEM,
+    LINES,
+    NEAR_LINES,
+    SMALL,
+)
 from lumitip_fab.pipeline.artefact import Files
 from lumitip_fab.text import page_letters
 from lumitip_fab.typeface import CODE, OF_HELVETICA, PLAIN, load_typeface
@@ -41,23 +52,24 @@ _PAIR_HIGH = 85 * mm
 
 
 class _Layout(NamedTuple):
-    """Sizes of pictures, as shares, and how many of a paragraph stand in a row at most."""
+    """Sizes of pictures, as shares, how many of a paragraph stand in a row at most, and whether the
+    rows of tables are near each other."""
 
     drawing: float
     pixels: float
     row: int
+    near: bool = False
 
 
-_LAYOUTS = tuple(
-    _Layout(*each)
-    for each in (
-        (1.0, 1.0, 2),
-        (0.9, 0.9, 2),
-        (0.9, 0.9, 4),
-        (0.8, 0.7, 4),
-        (0.7, 0.5, 4),
-        (0.6, 0.5, 4),
-    )
+_LAYOUTS = (
+    _Layout(1.0, 1.0, 2),
+    _Layout(0.9, 0.9, 2),
+    _Layout(0.9, 0.9, 4),
+    _Layout(0.8, 0.7, 4),
+    _Layout(0.7, 0.5, 4),
+    _Layout(0.8, 0.7, 4, near=True),
+    _Layout(0.6, 0.5, 4),
+    _Layout(0.55, 0.5, 4, near=True),
 )
 """From the largest to the smallest, which is taken where that saves a page: a picture of pixels has
 no words to read."""
@@ -151,7 +163,7 @@ def _flowables(
         elif token.type == "tr_open":
             rows.append([])
         elif token.type == "table_close":
-            yield _table(rows)
+            yield _table(rows, NEAR_LINES if layout.near else LINES)
         elif token.type == "inline":
             before = tokens[at - 1]
             if before.type in ("th_open", "td_open"):
@@ -237,7 +249,7 @@ def _letter(group: Group) -> None:
             node.fontSize *= share
 
 
-def _table(rows: list[list[Paragraph]]) -> Flowable:
+def _table(rows: list[list[Paragraph]], style: TableStyle) -> Flowable:
     """Columns as wide as their text up to some words, narrower within the page, but not than their
     longest word."""
     columns = [[row[i] for row in rows if i < len(row)] for i in range(max(map(len, rows)))]
@@ -248,7 +260,7 @@ def _table(rows: list[list[Paragraph]]) -> Flowable:
     if share < 0:
         widths = [WIDTH / sum(asked) * high for high in asked]
     split = len(rows) > _WHOLE_ROWS
-    table = LongTable(rows, widths, repeatRows=1, splitByRow=split, style=LINES, hAlign="LEFT")
+    table = LongTable(rows, widths, repeatRows=1, splitByRow=split, style=style, hAlign="LEFT")
     table.spaceBefore = table.spaceAfter = 6
     return table
 

@@ -63,9 +63,10 @@ def _pages(step: list[Flowable], room: float) -> int:
     """How many pages a step takes, with some room on the first one."""
     measured, pieces = Canvas(io.BytesIO()), list(step)
     for page in count(1):
-        while pieces and (high := _high(pieces[0], measured)) <= room:
+        after = 0.0  # space below the piece before, which that above the next shares
+        while pieces and (high := _high(pieces[0], measured, after)) <= room:
             room -= high
-            pieces.pop(0)
+            after = float(pieces.pop(0).getSpaceAfter())
         if not pieces:
             return page
         first, *rest = pieces[0].splitOn(measured, WIDTH, room) or [pieces[0]]
@@ -75,6 +76,7 @@ def _pages(step: list[Flowable], room: float) -> int:
     raise AssertionError
 
 
-def _high(piece: Flowable, measured: Canvas) -> float:
+def _high(piece: Flowable, measured: Canvas, after: float) -> float:
+    """Height of a piece with what it adds to the space below the piece before, and its own."""
     high: float = piece.wrapOn(measured, WIDTH, _HIGH)[1]
-    return high + float(piece.getSpaceBefore() + piece.getSpaceAfter())
+    return high + max(float(piece.getSpaceBefore()) - after, 0.0) + float(piece.getSpaceAfter())

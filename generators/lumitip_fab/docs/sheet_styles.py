@@ -44,6 +44,10 @@ LINES = TableStyle(
         ("BOTTOMPADDING", (0, 0), (-1, -1), 2),
     ]
 )
+NEAR_LINES = TableStyle(
+    [("TOPPADDING", (0, 0), (-1, -1), 0.6), ("BOTTOMPADDING", (0, 0), (-1, -1), 0.8)], parent=LINES
+)
+"""Of a step that is as long as its page."""
 BESIDE = TableStyle(
     [
         ("ALIGN", (0, 0), (-1, -1), "CENTER"),

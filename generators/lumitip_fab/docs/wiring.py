@@ -5,7 +5,7 @@ import csv
 import io
 
 from lumitip_fab.design import Cable, Cabling, Design, Pack, Tie, Wire
-from lumitip_fab.design.cabling import COLOURS, THREAD_MM, awg, codes_of, named, outer_mm
+from lumitip_fab.design.cabling import COLOURS, STRIP_MM, THREAD_MM, awg, codes_of, named, outer_mm
 from lumitip_fab.docs.diagram import diagram
 from lumitip_fab.docs.spec_circuit import pulled_up
 from lumitip_fab.docs.steps import WorkStep
@@ -64,7 +64,8 @@ def wiring_note(design: Design) -> str:
 
 def wiring_steps(design: Design) -> tuple[WorkStep, ...]:
     """The wires that are cut, and how they are soldered in and held."""
-    cut = WorkStep("Cut the wires", _cut(design))
+    lengths = ("manual/lengths.svg", "Each wire, and the cables to scale")
+    cut = WorkStep("Cut the wires", _cut(design), (lengths,))
     shown = ("wiring/wiring.svg", "Wiring")
     return cut, WorkStep("Solder the wires", _soldered(design), (shown,))
 
@@ -77,6 +78,7 @@ def _cut(design: Design) -> str:
         wires=listed([f"stranded wire of {mm2:g} mm² (AWG {awg(mm2)})" for mm2 in sections]),
         tables="\n\n".join(map(_table, cabling.cables)),
         marked=marked,
+        strip_mm=STRIP_MM,
         pen="a permanent pen, " * bool(marked),
         travel_mm=cabling.travel_mm,
         controller_mm=cabling.controller_mm,

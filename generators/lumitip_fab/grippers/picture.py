@@ -3,10 +3,10 @@
 import numpy as np
 
 from lumitip_fab.design import Point
-from lumitip_fab.grippers.dimensions import circle, line, pointers
-from lumitip_fab.grippers.drawing import FROM_GRIPPER, FROM_SIDE, draw_body
 from lumitip_fab.grippers.proposal import Proposal, upright
 from lumitip_fab.parts.export import mesh
+from lumitip_fab.scenes.coupling_view import FROM_GRIPPER, FROM_SIDE, draw_body
+from lumitip_fab.scenes.dimensions import circle, line, pointers
 from lumitip_fab.scenes.drawing import Sheet
 
 LARGE_MM = 85.0  # of the larger view on the page

@@ -1,6 +1,6 @@
 """The files of `lumitip-fab gripper new`, before and after the answers."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from collections.abc import Set as Names
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,10 +13,11 @@ from lumitip_fab.catalogue.grippers import Gripper
 from lumitip_fab.catalogue.record import Confidence
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.messages import shown_path, unknown_name
+from lumitip_fab.design import Design
 from lumitip_fab.errors import InputError, Problem
 from lumitip_fab.grippers.answers import Answer, entry_text, read_answers, template
-from lumitip_fab.grippers.drawing import body_drawing, coupling_drawing
-from lumitip_fab.grippers.figures import TEXTS
+from lumitip_fab.grippers.drawing import body_drawing
+from lumitip_fab.grippers.figures import TEXTS, figures, value_of
 from lumitip_fab.grippers.page import page
 from lumitip_fab.grippers.picture import found_drawing
 from lumitip_fab.grippers.proposal import Proposal, propose
@@ -27,6 +28,7 @@ from lumitip_fab.parts.export import mesh, mesh_stl
 from lumitip_fab.parts.gauge import gauge_solid
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.paths import design_folder, parts_file
+from lumitip_fab.scenes.coupling_view import coupling_view
 from lumitip_fab.text import table_of
 
 _CHORD_MM = 0.02
@@ -92,10 +94,11 @@ def started(
     """
     texts = table_of(TEXTS)
     shown = _entry(own.catalogue, like) if like else example(published.catalogue)
-    foot = _gauge(own if like else published, name, shown)
+    held = design_with(own if like else published, name, shown)
+    foot = _gauge(held)
     gauge, notes = (foot if like else None), tip.notes() if tip else ()
     drawings = {
-        texts["page"]["foot"]: coupling_drawing(shown, foot),
+        texts["page"]["foot"]: coupling_view(held.mount, foot, set(_figures_of(shown))),
         texts["page"]["whole"]: body_drawing(shown),
     }
     known = {
@@ -120,8 +123,13 @@ def started(
     return files, notes
 
 
-def _gauge(finger: Input, name: str, gripper: Gripper, file: Path | None = None) -> Mesh:
-    return mesh(gauge_solid(design_with(finger, name, gripper, file)), _CHORD_MM)
+def _figures_of(gripper: Gripper) -> Iterator[str]:
+    """Names of the figures that a gripper has."""
+    return (f.name for f in figures() if value_of(gripper, f.name) is not None)
+
+
+def _gauge(held: Design) -> Mesh:
+    return mesh(gauge_solid(held), _CHORD_MM)
 
 
 def _gauge_of(
@@ -133,7 +141,7 @@ def _gauge_of(
     if missing:
         return None, (texts["open"].format(figures=", ".join(missing)),)
     try:
-        return _gauge(finger, name, with_figures(others, values)), ()
+        return _gauge(design_with(finger, name, with_figures(others, values))), ()
     except InputError as error:
         reasons = [texts["broken"].format(reason=problem.text) for problem in error.problems]
         return None, tuple(reasons)
@@ -153,7 +161,7 @@ def finished(name: str, config: Input, answers: Path) -> Written:
         InputError: with every fault of the answers, or every rule that the gripper breaks.
     """
     gripper = read_answers(answers)
-    gauge = _gauge(config, name, gripper, answers)
+    gauge = _gauge(design_with(config, name, gripper, answers))
     return {
         f"{name}_entry.toml": entry_text(name, gripper).encode(),
         f"{name}_gauge.stl": mesh_stl(gauge),

@@ -13,8 +13,8 @@ AZIMUTH_DEG = 35.0
 ELEVATION_DEG = 24.0
 GAP_MM = 26.0  # by which the bodies are pulled apart along the axis
 ASIDE_MM = 115.0  # by which a holder is pulled off the gripper
-WORDS_SCALE = 1.6  # of a drawing that is more than twice as large as a finger's
-LABEL_MM, WORDS_MM = 12.0, 104.0
+WORDS_SCALE = 2.4  # of a drawing that is more than twice as large as a finger's
+LABEL_MM, WORDS_MM = 12.0, 118.0
 LAYERS = ("interface", "backing", "board", "silicone", "film")
 Words = tuple[str, str]
 
@@ -148,7 +148,7 @@ def _label(
     for flange in flanges:
         right.append(
             (
-                (f"Robot's tool flange, ISO 9409-1-{flange.iso}", "0.00 mm"),
+                ("Robot's tool flange", f"ISO 9409-1-{flange.iso}, 0.00 mm"),
                 _rightmost(at["robot.flange"]),
             )
         )
@@ -160,7 +160,7 @@ def _label(
         )
         right.append(
             (
-                ("Flange, upper and lower part", climb(system.gripper_z_mm)),
+                ("Flange, both parts", climb(system.gripper_z_mm)),
                 _rightmost(at[f"{flange.name}.upper"]),
             )
         )
@@ -171,19 +171,19 @@ def _label(
     mounted = climb(system.gripper_z_mm + system.reach_mm)
     right.append(
         (
-            (f"Gripper {mount.title}, to its fingers", f"{mounted}, {system.confidence}"),
+            (f"Gripper {mount.title}", f"{mounted}, {system.confidence}"),
             _rightmost(at["gripper.envelope"]),
         )
     )
     for name in system.holders:
         left.append(
             (
-                ("Controller's board in its holder", "clips round the gripper"),
+                ("Controller's board", "its holder clips round the gripper"),
                 _leftmost(at[f"{name}.tray"]),
             )
         )
     right.append(
-        (("Fingers, to the tool centre point", climb(tcp_mm)), _rightmost(at["emitter.backing"]))
+        (("Fingers", f"{climb(tcp_mm)}, tool centre point"), _rightmost(at["emitter.backing"]))
     )
     left.append((("Receiver", "its face to the emitter's"), _leftmost(at["receiver.backing"])))
     x_low, x_high = float(sheet.low[0]) - LABEL_MM, float(sheet.high[0]) + LABEL_MM

@@ -7,19 +7,27 @@ import numpy as np
 import trimesh
 
 from lumitip_fab.design import Box, Design, Finger, Flange, Insert, Mould, Point, frames
+from lumitip_fab.parts.export import mesh
+from lumitip_fab.parts.gauge import gauge_solid
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.pipeline.artefact import Artefact, Files
 from lumitip_fab.scenes.bench_views import WiredBoard, drop_view, facing_view
+from lumitip_fab.scenes.card_view import card_view
 from lumitip_fab.scenes.casting_page import Cast
 from lumitip_fab.scenes.casting_parts import nuts_of, screws_of, wires_of
 from lumitip_fab.scenes.casting_views import filled_view, lifted_view, lowered_view
 from lumitip_fab.scenes.clamped_view import clamped_view
 from lumitip_fab.scenes.contacts_view import contacts_view
+from lumitip_fab.scenes.coupling_view import THREAD, coupling_view
 from lumitip_fab.scenes.finger_views import board_view, cable_view, folded_view
 from lumitip_fab.scenes.flange_view import flange_view
+from lumitip_fab.scenes.gauge_view import gauge_view
 from lumitip_fab.scenes.glb import Group
+from lumitip_fab.scenes.lengths_view import lengths_view
+from lumitip_fab.scenes.marks_view import marks_view
 from lumitip_fab.scenes.mould_view import mould_view
 from lumitip_fab.scenes.plate_view import plate_view
+from lumitip_fab.scenes.skin_view import skin_view
 from lumitip_fab.scenes.system import finger_group, stl_mesh
 
 OFF_MM = 3.5  # from keys and stops to where a drop of silicone is tried
@@ -36,6 +44,10 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
     clamp = design.clamps[0] if design.clamps else None
     boards = {f.name: _wired(design, f, layers[f.name], groups[f.name]) for f in design.fingers}
     drawings = {
+        "measured": _measured(design),
+        "lengths": lengths_view(design.cabling),
+        "card": card_view(wired, layers[wired.name], design.mask.holes_mm),
+        "skin": skin_view(design.board, design.keys, layers[finger.name]),
         "facing": facing_view(boards[finger.name], boards[wired.name]),
         "plate": plate_view(stl_mesh(files, "fit/fit_plate.stl"), design.fit_plate),
         "board": board_view(finger, layers[finger.name], boards[finger.name].parts),
@@ -49,6 +61,11 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
         "clamped": clamped_view(cast, clamp, _clamp(design, files), nuts_of(design.clamps)),
         "lifted": lifted_view(cast),
     }
+    if design.packages.unmarked:
+        drawings["marks"] = marks_view(design.packages)
+    for card in design.gauge_cards:
+        printed = stl_mesh(files, f"gauge/{card.name}.stl")
+        drawings["gauge"] = gauge_view(card, design.outline, printed, layers[wired.name])
     for flange in design.flanges:
         drawings |= {flange.name: _flange(design, flange, files), "contacts": contacts_view(flange)}
     for name, seen in layers.items():
@@ -58,6 +75,12 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
         Artefact(f"manual/{name}.svg", drawing.encode(), frame="")
         for name, drawing in drawings.items()
     )
+
+
+def _measured(design: Design) -> str:
+    """The foot of a finger, with the figures of the gripper's entry that are not sure."""
+    figures = {figure.name for figure in design.mount.to_measure}
+    return coupling_view(design.mount, mesh(gauge_solid(design)), {THREAD, *figures})
 
 
 def _flange(design: Design, flange: Flange, files: Files) -> str:

@@ -1,0 +1,90 @@
+"""What the live view must show: a card over the cells of a finger, and the picture of it."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import shapely
+
+from lumitip_fab.design import Finger
+from lumitip_fab.parts.surface import Mesh
+from lumitip_fab.scenes.cut import rings_of
+from lumitip_fab.scenes.dimensions import circle
+from lumitip_fab.scenes.drawing import Points, Sheet, View
+from lumitip_fab.scenes.finger_views import paint
+
+SCALE = 1.5
+ANGLE_DEG = 25.0
+"""Of the card's edge."""
+LIGHT, DARK = (240, 229, 115), (3, 32, 77)
+_FRONT = View(np.eye(3)).enlarged(SCALE)
+_CARD, _EDGE_MM = "#f3ead2", 60.0
+_BESIDE_MM, _PAST_MM, _NAME_MM = 14.0, 12.0, 5.0
+_SHARE = 0.94  # of the room of a cell in the picture
+
+
+def card_view(finger: Finger, layers: Mapping[str, Mesh], holes_mm: Sequence[float]) -> str:
+    """The finger from the front, its tip up, under a card; beside it the cells as they are read.
+
+    Args:
+        finger: for its cells.
+        layers: interface, backing, film and so on in the sensor frame, from the back.
+        holes_mm: size of the hole at each cell.
+    """
+    sheet, cells = Sheet(), np.array(finger.cells)
+    seen = {k: layers[k] for k in ("interface", "backing", "film") if k in layers}
+    with sheet.group("finger"):
+        paint(sheet, _FRONT, seen)
+        for cell, hole_mm in zip(cells, holes_mm, strict=True):
+            sheet.area([SCALE * circle((cell[0], cell[1]), hole_mm / 2)], "part", "#fff")
+    low, high = sheet.low.copy(), sheet.high.copy()
+    middle = cells.mean(axis=0)
+    below = _below(middle)
+    low_mm, high_mm = low / SCALE, high / SCALE
+    held = shapely.box(low_mm[0] - _PAST_MM, cells[:, 1].min() - _PAST_MM, high_mm[0] + 2.0, 999.0)
+    card = shapely.Polygon(below) & held
+    with sheet.group("card"):
+        sheet.area([SCALE * ring for ring in rings_of(card)], "body", _CARD)
+    right = float(high[0]) - SCALE * float(cells[:, 0].min()) + _BESIDE_MM
+    radius = _room_mm(cells) / 2
+    right += SCALE * radius
+    with sheet.group("picture"):
+        for cell in cells:
+            room = shapely.Point(cell).buffer(_SHARE * radius, quad_segs=12)
+            free = 1.0 - (room & card).area / room.area
+            ring = SCALE * np.array(room.exterior.coords) + np.array([right, 0.0])
+            sheet.area([ring], "part", _colour(free))
+    along = SCALE * (np.array(below[:2]) - middle)
+    way = along[1] - along[0]
+    half = SCALE * (np.ptp(cells[:, 0]) / 2 + 2 * radius) / math.cos(math.radians(ANGLE_DEG))
+    ends = [side * half * way / np.linalg.norm(way) for side in (-1, 1)]
+    at = SCALE * middle + np.array([right, 0.0])
+    sheet.lines([np.array([at + end for end in ends])], "mark")
+    foot = float(sheet.low[1]) - _NAME_MM
+    for x, name in ((SCALE * middle[0], "The card, seen from the front"), (at[0], "The picture")):
+        sheet.words(float(x), foot, name, "name", "middle")
+    sheet.cover(float(at[0]), foot - 1.0)
+    return sheet.svg({"data-scale": SCALE, "data-angle-deg": ANGLE_DEG})
+
+
+def _below(middle: Points) -> list[Points]:
+    """Corners of what lies under a slanted line through a place, the line's ends first."""
+    turn = math.radians(ANGLE_DEG)
+    way, down = (
+        np.array([math.cos(turn), math.sin(turn)]),
+        np.array([math.sin(turn), -math.cos(turn)]),
+    )
+    left, right = middle - _EDGE_MM * way, middle + _EDGE_MM * way
+    return [left, right, right + 2 * _EDGE_MM * down, left + 2 * _EDGE_MM * down]
+
+
+def _room_mm(cells: Points) -> float:
+    """The least distance of two cells."""
+    apart = np.linalg.norm(cells[:, None] - cells, axis=2)
+    return float(apart[apart > 0].min())
+
+
+def _colour(free: float) -> str:
+    """Between dark and light by the share of a cell that is free."""
+    mixed = (round(dark + free * (light - dark)) for dark, light in zip(DARK, LIGHT, strict=True))
+    return "#" + "".join(f"{value:02x}" for value in mixed)

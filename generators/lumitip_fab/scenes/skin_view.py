@@ -1,0 +1,48 @@
+"""Where a worn skin is cut and taken off: the board's edge, and the plugs of silicone."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import shapely
+
+from lumitip_fab.design import Board, Key
+from lumitip_fab.parts.surface import Mesh
+from lumitip_fab.scenes.dimensions import circle
+from lumitip_fab.scenes.drawing import Sheet, View
+from lumitip_fab.scenes.finger_views import paint
+
+SCALE = 1.5
+_FRONT = View(np.eye(3)).enlarged(SCALE)
+_LABEL_MM, _WORDS_MM = 8.0, 50.0
+
+
+def skin_view(board: Board, keys: Sequence[Key], layers: Mapping[str, Mesh]) -> str:
+    """The finger from the front, its tip up, without its mask.
+
+    Args:
+        board: whose edge is cut along.
+        keys: holes of which silicone is pushed out.
+        layers: interface, backing and silicone in the sensor frame, from the back.
+    """
+    sheet, box = Sheet(), board.box
+    seen = {k: layers[k] for k in ("interface", "backing", "silicone") if k in layers}
+    paint(sheet, _FRONT, seen)
+    edge = SCALE * np.array(shapely.box(*box.bounds_mm).exterior.coords)
+    with sheet.group("cut"):
+        sheet.lines([edge], "mark")
+    with sheet.group("plugs"):
+        sheet.lines([circle(_page(*key.at), SCALE * key.hole_mm / 2) for key in keys], "hidden")
+    cut_at = np.array(_page(box.x_max_mm, box.centre_mm[1]))
+    labels = [(("Cut", "round the edge of the board"), cut_at)]
+    if keys:
+        last = max(keys, key=lambda key: (key.at[0], key.at[1]))
+        place = np.array(_page(*last.at))
+        labels.append((("Plugs", "pushed out to the back"), place))
+    right = float(sheet.high[0]) + _LABEL_MM
+    sheet.leaders(labels, right, "start")
+    sheet.cover(right + _WORDS_MM, float(labels[0][1][1]))
+    return sheet.svg({"data-scale": SCALE})
+
+
+def _page(x_mm: float, y_mm: float) -> tuple[float, float]:
+    return SCALE * x_mm, SCALE * y_mm

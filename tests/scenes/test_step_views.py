@@ -1,0 +1,163 @@
+"""Drawings of steps that measure, cut and compare: they show this design's own figures."""
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree as XmlTree
+
+import numpy as np
+import pytest
+
+from lumitip_fab.config.load import load
+from lumitip_fab.derive import derive
+from lumitip_fab.design import Design
+from lumitip_fab.design.cabling import COLOURS, STRIP_MM, codes_of
+from lumitip_fab.design.encoding import read_design
+from lumitip_fab.scenes.coupling_view import SCALE as COUPLING_SCALE
+from lumitip_fab.scenes.marks_view import MARK, PROBES, marks_view
+
+SVG = "{http://www.w3.org/2000/svg}"
+PRESETS = [
+    "published",
+    *(pytest.param(name, marks=pytest.mark.slow) for name in ("flex", "wsg50", "robotiq_2f140")),
+]
+
+
+@pytest.fixture(params=PRESETS)
+def folder(request: pytest.FixtureRequest, built: Callable[[str], Path]) -> Path:
+    return built(request.param)
+
+
+@pytest.fixture(scope="module")
+def published() -> Design:
+    return derive(load(Path(__file__).parents[2] / "design/presets/published.toml"))
+
+
+def drawn(folder: Path, name: str) -> tuple[Design, XmlTree.Element]:
+    design = read_design(folder / "design.json")
+    return design, XmlTree.parse(folder / f"manual/{name}.svg").getroot()
+
+
+def points(path: XmlTree.Element) -> np.ndarray:
+    """Corners of a path with y up, shape `(n, 2)`."""
+    pairs = re.findall(r"(-?[\d.]+),(-?[\d.]+)", path.attrib["d"])
+    return np.array([(float(x), -float(y)) for x, y in pairs])
+
+
+def words(root: XmlTree.Element) -> set[str]:
+    return {str(text.text) for text in root.iter(f"{SVG}text")}
+
+
+def group(root: XmlTree.Element, name: str) -> list[XmlTree.Element]:
+    found = root.find(f"{SVG}g[@id='{name}']")
+    assert found is not None, name
+    return list(found)
+
+
+def test_the_foot_names_what_the_step_asks_for_and_nothing_else(folder: Path) -> None:
+    design, root = drawn(folder, "measured")
+    html = (folder / "manual/manual.html").read_text(encoding="utf-8")
+    _, _, later = html.partition("Measure your gripper</h2>")
+    step = later.partition("<h2>")[0]
+    table = set(re.findall(r"<td><code>([\w.]+)</code></td>", step))
+    asked = {figure.name for figure in design.mount.unsure} & table
+    figures = {name for name in words(root) if "_" in name or name == "bolt"}
+    assert figures == asked | {"bolt"}
+    assert "depth of the thread" in words(root)
+
+
+def test_the_foot_is_to_scale(folder: Path) -> None:
+    design, root = drawn(folder, "measured")
+    tips = [points(p)[0] for p in root.iter(f"{SVG}path") if p.attrib.get("fill") == "#1a1a1a"]
+    ends = list(zip(tips[::2], tips[1::2], strict=True))
+    lengths = [math.dist(*pair) / COUPLING_SCALE for pair in ends]
+    mount = design.mount
+    into_mm = mount.bolt_length_mm - mount.land_mm
+    for length in (into_mm, mount.seat_back_w_mm):
+        assert min(abs(length - other) for other in lengths) < 0.01
+
+
+def test_wires_are_as_long_and_as_coloured_as_they_are_cut(folder: Path) -> None:
+    design, root = drawn(folder, "lengths")
+    scale = float(root.attrib["data-scale"])
+    for cable in design.cabling.cables:
+        cores = [p for p in group(root, cable.name) if p.attrib.get("stroke-width") == ".8"]
+        ink = [COLOURS[code][1] for wire in cable.wires for code in codes_of(wire.colour)]
+        assert [core.attrib["stroke"] for core in cores] == ink
+        for core in cores:
+            assert np.ptp(points(core)[:, 0]) / scale == pytest.approx(cable.length_mm, abs=0.1)
+    assert f"{STRIP_MM:g} mm" in words(root)
+
+
+def test_the_picture_is_dark_where_the_card_is(folder: Path) -> None:
+    design, root = drawn(folder, "card")
+    cells = np.array(design.receiver.cells)
+    circles = group(root, "picture")
+    centres = np.array([points(circle)[:-1].mean(axis=0) for circle in circles])
+    moved = centres - centres.mean(axis=0)
+    scale = float(root.attrib["data-scale"])
+    assert moved == pytest.approx(scale * (cells - cells.mean(axis=0)), abs=0.05)
+    (card,) = group(root, "card")
+    top = points(card)
+    lightness = {}
+    for cell, circle in zip(cells, circles, strict=True):
+        fill = circle.attrib["fill"]
+        lightness[tuple(cell)] = sum(int(fill[k : k + 2], 16) for k in (1, 3, 5))
+    left, right = top[top[:, 0].argmin()], top[top[:, 1].argmax()]
+    slope = (right[1] - left[1]) / (right[0] - left[0])
+    assert math.degrees(math.atan(slope)) == pytest.approx(25.0, abs=15.0)
+    for (x, y), light in lightness.items():
+        over = scale * y - (right[1] + slope * (scale * x - right[0]))
+        if over > 0.7 * scale * design.layout.pitch_mm:
+            assert light > 400
+        if over < -0.7 * scale * design.layout.pitch_mm:
+            assert light < 150
+
+
+def test_the_gauge_card_is_drawn_where_there_is_one(folder: Path) -> None:
+    design = read_design(folder / "design.json")
+    html = (folder / "manual/manual.html").read_text(encoding="utf-8")
+    assert (folder / "manual/gauge.svg").exists() == bool(design.gauge_cards)
+    assert ('data-file="manual/gauge.svg"' in html) == bool(design.gauge_cards)
+    if design.gauge_cards:
+        _, root = drawn(folder, "gauge")
+        assert {"Stop", "Edge", "Rails"} <= words(root)
+
+
+def test_a_worn_skin_is_cut_round_the_board(folder: Path) -> None:
+    design, root = drawn(folder, "skin")
+    scale, box = float(root.attrib["data-scale"]), design.board.box
+    (cut,) = group(root, "cut")
+    edge = points(cut) / scale
+    assert edge.min(axis=0) == pytest.approx((box.x_min_mm, box.y_min_mm), abs=0.02)
+    assert edge.max(axis=0) == pytest.approx((box.x_max_mm, box.y_max_mm), abs=0.02)
+    rings = "".join(path.attrib["d"] for path in group(root, "plugs"))
+    assert rings.count("M") == len(design.keys)
+
+
+@pytest.mark.parametrize(("led", "left"), [("cathode", "black"), ("anode", "red")])
+@pytest.mark.parametrize(("detector", "light"), [("collector", "red"), ("emitter", "black")])
+def test_the_probes_are_where_the_meter_shows_something(
+    published: Design, led: str, left: str, detector: str, light: str
+) -> None:
+    packages = published.packages
+    marked = replace(
+        packages,
+        led=packages.led.model_copy(update={"marked": led}),
+        photodetector=packages.photodetector.model_copy(update={"marked": detector}),
+    )
+    root = XmlTree.fromstring(marks_view(marked))
+    for kind, colour in (("LED", left), ("photodetector", light)):
+        paths = [p for p in group(root, kind) if "fill" in p.attrib]
+        middles = {p.attrib["fill"]: points(p)[:, 0].mean() for p in paths}
+        other = next(name for name in PROBES if name != colour)
+        assert middles[PROBES[colour]] < middles[MARK] < middles[PROBES[other]]
+
+
+def test_a_part_whose_mark_is_known_is_not_tested(published: Design) -> None:
+    packages = published.packages
+    known = packages.led.model_copy(update={"marked_confidence": "measured"})
+    root = XmlTree.fromstring(marks_view(replace(packages, led=known)))
+    assert [g.attrib["id"] for g in root.iter(f"{SVG}g")] == ["photodetector"]
