@@ -9,8 +9,11 @@ import pytest
 
 from damages import excerpt
 from damages import failing as failing_of
+from lumitip_fab.checks.readers.kicad_board import read_board
+from lumitip_fab.checks.wiring import _beside_supply, _nets
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
+from lumitip_fab.design.encoding import read_design
 from lumitip_fab.docs.wiring import wiring_files
 from lumitip_fab.errors import InputError
 
@@ -86,8 +89,8 @@ EDITS: list[tuple[str, Edit, set[str]]] = [
     (NOTE, replaced("| BK black", "| BK red"), {"note"}),
     (NOTE, swapped("to contact 9", "to contact 5"), {"contacts"}),
     (NOTE, replaced("header J3:", "header J2:"), {"contacts"}),
-    (NOTE, replaced("W3.1 goes to contact 9, ", ""), {"contacts"}),
-    (NOTE, replaced("W3.1 goes to contact 9", "W3.1 goes to 9"), {"contacts", "named"}),
+    (NOTE, replaced("W3.1 goes to contact 5, ", ""), {"contacts"}),
+    (NOTE, replaced("W3.1 goes to contact 5", "W3.1 goes to 9"), {"contacts", "named"}),
     (NOTE, replaced("white, marked pink", "black, marked red"), {"marks"}),
     (NOTE, replaced("W3.3 white", "W3.2 white"), {"marks"}),
     (NOTE, replaced("in the set of 10", "in the set of 12"), {"marks"}),
@@ -127,6 +130,21 @@ def test_a_net_or_a_pin_on_another_lead_is_seen(copied: Path) -> None:
     assert failing(copied) == {"pins"}
     header.write_text(replaced("PINS 6, 7", "PINS 7, 6")(told), encoding="utf-8")
     assert failing(copied) == {"pins"}
+
+
+@pytest.mark.parametrize(
+    ("board", "moved"),
+    [("emitter", {"J1.3": "LED"}), ("breakout", {"J7.2": "5V", "J7.3": "GND"})],
+)
+def test_a_supply_beside_a_line_to_the_controller_is_seen(
+    copied: Path, board: str, moved: dict[str, str]
+) -> None:
+    """A bridge of solder from pad to pad would then lead 24 V there."""
+    design = read_design(copied / "design.json")
+    nets = _nets(read_board(copied / f"boards/{board}/{board}.kicad_pcb"))
+    assert _beside_supply({board: nets}, design) == []
+    (found,) = _beside_supply({board: nets | moved}, design)
+    assert found.startswith(board)
 
 
 def test_a_multiplexer_without_a_pad_is_seen(copied: Path) -> None:

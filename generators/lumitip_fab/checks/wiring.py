@@ -4,6 +4,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -60,6 +61,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield count(
         "wiring.pins", _LIST, _wrong_pins(outputs, rows, boards["receiver"], nets, design), "pins"
     )
+    yield count("wiring.neighbours", _LIST, _beside_supply(nets, design), "pads beside the supply")
     yield count("wiring.colours", _LIST, _wrong_colours(rows, design), "wires")
     yield _lengths(rows, boards, design)
     yield from _currents(rows, design)
@@ -92,6 +94,26 @@ def _wrong_ends(rows: tuple[Row, ...], nets: Nets) -> list[str]:
             wrong.append(f"{row.wire}: {' and '.join(sorted(signals))}")
     twice = [wire for wire, times in Counter(row.wire for row in rows).items() if times > 1]
     return wrong + [f"{wire} twice" for wire in twice]
+
+
+def _beside_supply(nets: Nets, design: Design) -> list[str]:
+    """Pads of wires beside one of the LEDs' supply that are not ground's: a bridge of solder there
+    would lead the supply to a controller."""
+    supply, wrong = design.emitter.connector.supply, []
+    for board, of in nets.items():
+        for ref in _CONNECTORS.get(board, ()):
+            row = {
+                int(pad.partition(".")[2]): net
+                for pad, net in of.items()
+                if pad.startswith(f"{ref}.")
+            }
+            carried = [row[number].removesuffix(_BEFORE_FUSE) for number in sorted(row)]
+            wrong += [
+                f"{board} {ref}: {one} beside {other}"
+                for one, other in pairwise(carried)
+                if supply in (one, other) and not {one, other} <= {supply, "GND"}
+            ]
+    return wrong
 
 
 def _wrong_pins(
@@ -163,7 +185,7 @@ def _header(outputs: Path, name: str) -> list[str]:
 
 def _wrong_colours(rows: tuple[Row, ...], design: Design) -> list[str]:
     """Ground black, the LEDs' supply red, known codes, and no colour twice in a cable."""
-    fixed = _FIXED | {design.emitter.connector.signals[1]: "RD"}
+    fixed = _FIXED | {design.emitter.connector.supply: "RD"}
     wrong = []
     seen: set[tuple[str, str]] = set()
     for row in rows:
@@ -202,7 +224,7 @@ def reach_mm(board: KicadBoard, design: Design) -> float:
 
 def _currents(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
     """Current of the supply wires against the strings, and its voltage drop in the copper."""
-    supply = design.emitter.connector.signals[1]
+    supply = design.emitter.connector.supply
     lit_ma = sum(design.electrical.strings.high_ma)
     feeding = [row for row in rows if row.signal == supply]
     least = min((row.current_ma for row in feeding), default=math.nan)

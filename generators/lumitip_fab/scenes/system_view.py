@@ -182,9 +182,7 @@ def _label(
                 _leftmost(at[f"{name}.tray"]),
             )
         )
-    right.append(
-        (("Fingers", f"{climb(tcp_mm)}, tool centre point"), _rightmost(at["emitter.backing"]))
-    )
+    right.append((("Tool centre point", climb(tcp_mm)), _rightmost(at["emitter.backing"])))
     left.append((("Receiver", "its face to the emitter's"), _leftmost(at["receiver.backing"])))
     x_low, x_high = float(sheet.low[0]) - LABEL_MM, float(sheet.high[0]) + LABEL_MM
     top = float(sheet.high[1]) + LABEL_MM
@@ -192,7 +190,7 @@ def _label(
     sheet.leaders(left, x_low, "end")
     start = "robot's tool flange" if flanges else "gripper"
     sheet.words(x_low - WORDS_MM, top, f"From the {start} to the fingers", "title", "start")
-    sheet.cover(x_low - WORDS_MM, top + 4)
+    sheet.cover(x_low - WORDS_MM, top + 4 * WORDS_SCALE)
     sheet.cover(x_high + WORDS_MM + LABEL_MM, top)
 
 

@@ -92,7 +92,7 @@ def derive_plan(
     )
     driving, reliefs = _driving(config, strings, frame, faults)
     lit = connectors.emitter_signals(config)
-    wires = connectors.place(lit, lit[1], True, frame.connector_y_mm)
+    wires = connectors.place(lit, connectors.lit_supply(config), True, frame.connector_y_mm)
     switch = led_switch.switch_parts(config, frame.parts, wires, driving)
     led_switch.refuse_switch(config, strings, bool(switch), faults)
     emitter = Finger(

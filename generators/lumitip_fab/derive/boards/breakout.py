@@ -82,7 +82,7 @@ def derive_breakout(
     soldered = (*protecting, *light, *entry, *feed)
     parts = (*joints, *soldered, *(at_cameras if soldered else ()))
     screws = [(at, p.breakout.hole_mm) for at in holes]
-    emitter = connectors.emitter_signals(config)
+    lit = connectors.lit_supply(config)
     before = (input_nets(config)[0], FUSED) if entry else ()
     behind = (behind_net(config, plug),) if feed else ()
     return (
@@ -98,7 +98,7 @@ def derive_breakout(
             components=parts,
             notes=(Note("USB", (1.5 - length / 2, 0.0), 1.2, 90.0), *legend),
             supplies=tuple(
-                dict.fromkeys(("GND", connectors.REGULATED, "3V3", emitter[1], *before, *behind))
+                dict.fromkeys(("GND", connectors.REGULATED, "3V3", lit, *before, *behind))
             ),
             keep_outs=(),
             hot_loop=(),
@@ -107,8 +107,10 @@ def derive_breakout(
 
 
 def supply_signals(config: Input) -> tuple[str, ...]:
-    """Signals of the cable from the flange, which feeds emitter and controller."""
-    return tuple(dict.fromkeys((*connectors.emitter_signals(config)[:2], connectors.REGULATED)))
+    """Signals of the cable from the flange, which feeds emitter and controller: ground lies between
+    both supplies."""
+    lit = connectors.lit_supply(config)
+    return tuple(dict.fromkeys((lit, connectors.GROUND, connectors.REGULATED)))
 
 
 def _rows(plug: Plug, strip: Strip, width_mm: float) -> Rows:

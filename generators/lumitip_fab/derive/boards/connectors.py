@@ -31,9 +31,16 @@ def receiver_signals(config: Input, muxing: Muxing) -> tuple[str, ...]:
 
 
 def emitter_signals(config: Input) -> tuple[str, ...]:
-    """Signals of the emitter's connector: ground, supply and, where there is one, the switch."""
-    switched = (SWITCH,) if config.parts.emitter.switch else ()
-    return ("GND", f"{config.parameters.supply.voltage_v:g}V", *switched)
+    """Signals of the emitter's connector: ground and supply; where the LEDs are switched, the
+    supply, ground and the switch, so that a bridge of solder from pad to pad does not lead the
+    supply to the controller."""
+    supply = lit_supply(config)
+    return (supply, GROUND, SWITCH) if config.parts.emitter.switch else (GROUND, supply)
+
+
+def lit_supply(config: Input) -> str:
+    """Supply of the LEDs, such as `24V`."""
+    return f"{config.parameters.supply.voltage_v:g}V"
 
 
 def half_width_mm(ways: int, wide: bool) -> float:

@@ -53,7 +53,7 @@ def derive_cabling(
 ) -> Cabling:
     """All cables, from the signals of the connectors that they join."""
     p, travel_mm = config.parameters.wiring, mount.stroke_mm / 2
-    fixed = _FIXED | {boards.emitter.connector.signals[1]: _SUPPLY}
+    fixed = _FIXED | {boards.emitter.connector.supply: _SUPPLY}
     loads = _loads(config, boards.emitter, wiring, electrical)
     ends = _ends(config, boards, wiring)
     breakout, host = _named(boards.auxiliary_boards, "breakout"), _host(boards.auxiliary_boards)
@@ -121,7 +121,7 @@ def _loads(config: Input, emitter: Finger, wiring: Wiring, electrical: Electrica
     lit_ma = sum(electrical.strings.high_ma)
     read_ma = 1000 * wiring.pull_ups * electrical.channel.supply_v / wiring.pull_up_ohm
     own_ma = config.parts.controller.board.draws_ma + read_ma
-    supply = emitter.connector.signals[1]
+    supply = emitter.connector.supply
     together = {supply: lit_ma, "5V": own_ma, "GND": lit_ma + own_ma}
     if supply == "5V":
         together["5V"] = lit_ma + own_ma
