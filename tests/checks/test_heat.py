@@ -70,6 +70,16 @@ def test_a_step_beyond_a_limit_is_seen_in_the_design(copied: Path) -> None:
     assert failing(copied) == {"limit", "steps"}
 
 
+@pytest.mark.parametrize("part", ["glue", "primer", "tape", "insulation"])
+def test_a_limit_below_the_cure_is_seen_in_the_design(copied: Path, part: str) -> None:
+    file = copied / "design.json"
+    design = json.loads(file.read_text(encoding="utf-8"))
+    step = next(step for step in design["heat"] if step["name"] == "cure")
+    next(each for each in step["parts"] if each["name"] == part)["limit_c"] = 22.0
+    file.write_text(json.dumps(design), encoding="utf-8")
+    assert failing(copied) == {"limit", "notes", "steps"}
+
+
 def test_lost_notes_are_told(copied: Path) -> None:
     (copied / NOTE).unlink()
     assert failing(copied) == {"notes"}
@@ -117,6 +127,52 @@ def test_a_step_that_is_too_hot_is_refused(
     (told,) = {p.message for p in refusal.value.problems if words[1] in p.message}
     assert all(word in told for word in words)
     assert {p.field for p in refusal.value.problems} == {field}
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "withstands", "remedy"),
+    [
+        ("adhesives", "epoxy", "glue of slow two-part epoxy", "another glue (backing.glue)"),
+        (
+            "primers",
+            "DOWSIL PR-1200",
+            "primer of silicone primer DOWSIL PR-1200",
+            "another primer (mould.primer)",
+        ),
+        (
+            "tapes",
+            "polyimide tape",
+            "tape of polyimide tape 12 mm with silicone adhesive",
+            "another tape (mould.tape)",
+        ),
+        ("packs", "stranded wire", "insulation of stranded wire", "wires with another insulation"),
+    ],
+)
+def test_a_cure_that_another_material_does_not_bear_is_refused(
+    published: Input, kind: str, name: str, withstands: str, remedy: str
+) -> None:
+    with pytest.raises(InputError) as refusal:
+        derive(with_entry(published, kind, name, limit_c=22.0))
+    (problem,) = refusal.value.problems
+    assert problem.field == "mould.silicone"
+    for words in ("to 23 °C", f"the {withstands} withstands 22 °C", f"temperature, or {remedy}"):
+        assert words in problem.message
+
+
+def test_a_bendable_plate_counts_its_thread(design_dir: Path) -> None:
+    flex = load(design_dir / "presets" / "flex.toml")
+    with pytest.raises(InputError) as refusal:
+        derive(with_entry(flex, "packs", "waxed thread", limit_c=22.0))
+    (problem,) = refusal.value.problems
+    assert "the thread of waxed thread withstands 22 °C" in problem.message
+
+
+def test_every_material_of_the_catalogue_has_a_limit(published: Input) -> None:
+    known = published.catalogue
+    kinds = (known.adhesives, known.films, known.filaments, known.primers, known.silicones)
+    for entry in (each for kind in (*kinds, known.tapes) for each in kind.values()):
+        assert entry.limit_c > 25.0
+    assert known.packs["stranded wire"].limit_c and known.packs["waxed thread"].limit_c
 
 
 def test_the_finger_itself_is_heated_by_no_step_but_curing(published: Input) -> None:

@@ -154,6 +154,8 @@ class Adhesive(Entry):
     """Substances in it that may keep a silicone from curing."""
     hard_h: float | None = Field(default=None, ge=0.1, le=200)
     """Time after which it is hard and harmless under a primer (h); none where it never is."""
+    limit_c: float = Field(ge=20, le=300)
+    """Highest temperature at which a hard joint holds, for hours (°C)."""
 
 
 class Primer(Entry):
@@ -163,6 +165,8 @@ class Primer(Entry):
     """Area that a millilitre covers (cm²)."""
     dry_min: float = Field(ge=0, le=1440)
     """Time to dry before the silicone is poured (min)."""
+    limit_c: float = Field(ge=20, le=400)
+    """Highest temperature that it bears when dry, for hours (°C)."""
 
 
 class Tape(Entry):
@@ -170,6 +174,8 @@ class Tape(Entry):
 
     width_mm: Length
     """Width."""
+    limit_c: float = Field(ge=20, le=400)
+    """Highest temperature at which it holds and comes off clean, for hours (°C)."""
     gives_off: tuple[Substance, ...] = ()
     """Substances in it that may keep a silicone from curing."""
 

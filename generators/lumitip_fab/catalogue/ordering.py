@@ -151,6 +151,9 @@ class Pack(Entry):
     """Unit of `holds`."""
     colours: tuple[Annotated[str, Field(pattern=r"^[A-Z]{2}$")], ...] = ()
     """Colours of a set of wires, by the codes of IEC 60757."""
+    limit_c: float | None = Field(default=None, ge=20, le=400)
+    """Highest temperature that it bears for hours, of wires their insulation (°C); none of what has
+    it in a file of its own, or lies in no finger while the silicone cures."""
 
 
 class BoardPrice(Strict):

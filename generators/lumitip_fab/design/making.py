@@ -172,7 +172,8 @@ class HeatedPart:
     """A part that a step heats."""
 
     name: str
-    """`"backing"`, `"board"`, `"film"`, `"insert"`, `"interface"`, `"mould"` or `"silicone"`."""
+    """`"backing"`, `"board"`, `"film"`, `"glue"`, `"insert"`, `"insulation"`, `"interface"`,
+    `"mould"`, `"primer"`, `"silicone"`, `"tape"` or `"thread"`."""
     material: str
     limit_c: float
     """Highest temperature that its material bears in this step (°C)."""

@@ -67,11 +67,18 @@ _REMEDY = {
     "solder": ("stack.pcb_mm", "a laminate in parts/laminates.toml that withstands soldering"),
     "cure": (
         "mould.silicone",
-        "a silicone that cures at a lower temperature, or a material that withstands it",
+        "a silicone that cures at a lower temperature, or {other}",
     ),
     "crease": ("mask.film", "another film in parts/films.toml"),
 }
 """Field to refuse, and what to change, of each step."""
+_OTHER = {
+    "glue": "another glue (backing.glue)",
+    "insulation": "wires with another insulation, with its limit_c in parts/packs.toml",
+    "primer": "another primer (mould.primer)",
+    "tape": "another tape (mould.tape)",
+}
+"""Other parts that can be chosen beside a silicone."""
 
 
 def derive_heat(
@@ -104,6 +111,7 @@ def derive_heat(
                 HeatedPart("silicone", config.title("mould.silicone"), silicone.limit_c),
                 *(HeatedPart(part, name, known.filaments[name].limit_c) for part, name in printed),
                 HeatedPart("board", kind, laminate.limit_c),
+                *_joined(config),
                 *_inserted(config, mould),
             ),
         ),
@@ -119,6 +127,27 @@ def derive_heat(
     for step in steps:
         _refuse(step, config, faults)
     return steps
+
+
+def _joined(config: Input) -> tuple[HeatedPart, ...]:
+    """Glue, primer, tape, wires and, on a bendable plate, the thread that holds the board."""
+    backing, mould, packs = config.parts.backing, config.parts.mould, config.catalogue.packs
+    names = {"insulation": "stranded wire"}
+    if is_flex(config.parameters):
+        names["thread"] = "waxed thread"
+    known = [(part, name, packs[name]) for part, name in names.items() if name in packs]
+    bought = [
+        HeatedPart(part, pack.title or name, pack.limit_c)
+        for part, name, pack in known
+        if pack.limit_c is not None
+    ]
+    primed = mould.primer
+    return (
+        HeatedPart("glue", config.title("backing.glue"), backing.glue.limit_c),
+        *([HeatedPart("primer", config.title("mould.primer"), primed.limit_c)] if primed else []),
+        HeatedPart("tape", config.title("mould.tape"), mould.tape.limit_c),
+        *bought,
+    )
 
 
 def _inserted(config: Input, mould: Mould) -> tuple[HeatedPart, ...]:
@@ -137,6 +166,6 @@ def _refuse(step: HeatStep, config: Input, faults: Diagnostics) -> None:
             field=field,
             step=step,
             part=part,
-            remedy=remedy,
+            remedy=remedy.format(other=_OTHER.get(part.name, "a material that withstands it")),
             value=config.value(field),
         )
