@@ -105,6 +105,12 @@ def test_what_is_sold_in_packs_names_pack_and_confidence(copied: Path) -> None:
     assert float(wire["needed"]) == pytest.approx(lengths)
 
 
+def test_glue_and_adhesive_name_a_maker_and_a_product(copied: Path) -> None:
+    named = {row["item"]: (row["manufacturer"], row["part"]) for row in rows(copied, "order.csv")}
+    assert named["slow two-part epoxy"] == ("Huntsman", "Araldite 2011")
+    assert named["silicone adhesive"] == ("Dow", "DOWSIL 748 Non-Corrosive Sealant")
+
+
 def test_lines_that_share_a_spool_need_it_once_until_it_is_empty(outputs: Path) -> None:
     purchase = read_design(outputs / "design.json").purchase
     line = Bought("prints", "a.stl", "", "PETG", "", 600.0, 0.025, "g", "PETG")

@@ -12,6 +12,7 @@ from lumitip_fab.design import Bought
 from lumitip_fab.docs.bill import loose_parts
 from lumitip_fab.docs.orders import orders
 from lumitip_fab.docs.wiring import wiring_note
+from lumitip_fab.text import passage
 
 
 def test_supplies_follow_the_design(inputs: dict[str, Input]) -> None:
@@ -117,10 +118,18 @@ def test_wires_of_two_sections_are_two_sets(inputs: dict[str, Input]) -> None:
 def test_consumables_have_an_amount_a_pack_and_a_price(inputs: dict[str, Input], vary: Any) -> None:
     purchase = derive(inputs["published"]).purchase
     found = {piece.item: piece for piece in purchase.pieces if piece.group == "supplies"}
-    for item in ("isopropanol", "nitrile gloves", "clean cup", "plain paper", "silicone adhesive"):
+    for item in ("isopropanol", "nitrile gloves", "clean cup", "plain paper"):
         pack = purchase.pack(found[item].pack)
         assert pack and found[item].quantity <= pack.holds and found[item].price, item
         assert pack.confidence == "assumed" and not pack.manufacturer, item
+    adhesive = purchase.pack("silicone adhesive")
+    assert adhesive and found["silicone adhesive"].quantity <= adhesive.holds
     filmed = derive(vary(inputs["published"], {"mould.insert": "PET 100um"}))
     cloths = next(p for p in filmed.purchase.pieces if p.item == "lint-free cloth")
     assert cloths.quantity == found["lint-free cloth"].quantity + 2
+
+
+@pytest.mark.parametrize("route", ["film", "cut", "tpu"])
+def test_a_tape_that_is_not_in_the_bill_is_called_so(route: str) -> None:
+    needs = passage("docs/wrapping.md", f"{route}_wrap").partition("**Time:**")[0]
+    assert "(or double-sided tape, which is not in the list of parts)" in " ".join(needs.split())
