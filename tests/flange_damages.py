@@ -202,7 +202,7 @@ def lid_sags(body: Body) -> Body:
 
 LOWERS: dict[Damage, set[str]] = {
     spigot_narrow: {"spigot", "min_wall"},
-    spigot_short: {"seat", "overhang"},
+    spigot_short: {"seat", "overhang", "span"},
     bolt_askew: {"bolts", "bolt_clearance"},
     bolt_hole_wide: {"bolt_width"},
     hole_near_another: {"hole_wall", "min_wall"},
@@ -230,9 +230,10 @@ LOWERS: dict[Damage, set[str]] = {
     screw_hole_wide: {"screw_width"},
     countersink_missing: {"screw_heads", "head_clearance"},
     bolt_hole_bellied: {"bolt_bearing"},
-    sawn: {"layers", "bolt_bearing", "overhang", "min_wall"},
+    sawn: {"layers", "bolt_bearing", "overhang", "span", "min_wall"},
     wall_thin: {"min_wall", "hole_wall"},
     foot_missing: {
+        "span",
         "bed_contact",
         "overhang",
         "seat",

@@ -130,7 +130,7 @@ DAMAGES: dict[Damage, set[str]] = {
     screw_hole_wide: {"screw_width"},
     tray_narrower: {"tray_gap"},
     rim_higher: {"rim"},
-    tails_touch: {"tail_room", "overhang"},
+    tails_touch: {"tail_room", "overhang", "span"},
     boss_low: {"bosses"},
     cradle_wide: {"cradle", "preload"},
     ribs_worn: {"preload"},
@@ -139,7 +139,7 @@ DAMAGES: dict[Damage, set[str]] = {
     strap_hole_filled: {"straps", "strap_width"},
     arm_hollow: {"min_wall"},
     arm_barred: {"tie_way"},
-    foot_missing: {"bed_contact", "overhang"},
+    foot_missing: {"bed_contact", "overhang", "span"},
     loose_piece: {"bodies", "rim"},
 }
 

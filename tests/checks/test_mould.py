@@ -117,7 +117,7 @@ SOLID = {
     wall_overhanging: {"undercut"},
     wall_thin: {"min_wall"},
     island_added: {"bodies"},
-    sprue_added: {"fits_bed"},
+    sprue_added: {"fits_bed", "span"},
     post_added: {"seat"},
     squashed: {"thickness", "tip_thickness", "stops", "volume", "grip"},
     tilted: {"stops", "draft", "undercut", "letter"},

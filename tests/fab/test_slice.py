@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from damages import excerpt
 from lumitip_fab.cli import main
 from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import slicing
@@ -66,6 +67,22 @@ def assert_times_are_billed(outputs: Path, parts: dict[str, dict[str, float]]) -
         assert 60 * int(minutes) == pytest.approx(part["seconds"], rel=0.25), row["item"]
         grams = int(times or 1) * part["solid_g"]
         assert float(row["quantity"]) == pytest.approx(grams, rel=0.01), row["item"]
+
+
+def test_a_finger_slices_without_support(
+    outputs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of one part, for a quick look; the slow test has all of them."""
+    program("prusa-slicer")
+    part = "backing/emitter_backing.3mf"
+    folder = excerpt(outputs, tmp_path / "one", "print", part)
+    manifest = json.loads((outputs / "manifest.json").read_text(encoding="utf-8"))
+    manifest["files"] = {k: v for k, v in manifest["files"].items() if (folder / k).exists()}
+    (folder / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    assert main(["slice", "--out", str(folder), "--json"]) == 0
+    (found,) = json.loads(capsys.readouterr().out)["parts"]
+    assert found["part"] == part and found["warnings"] == []
+    assert found["layers"] == 273 and found["reach_mm"] < 3.0
 
 
 FLEX = {"backing/emitter_backing.3mf": 10, "interface/emitter_interface.3mf": 130}

@@ -9,6 +9,7 @@ from xml.etree import ElementTree as XmlTree
 
 import numpy as np
 import pytest
+import shapely
 
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
@@ -63,9 +64,11 @@ def test_the_foot_names_what_the_step_asks_for_and_nothing_else(folder: Path) ->
     step = later.partition("<h2>")[0]
     table = set(re.findall(r"<td><code>([\w.]+)</code></td>", step))
     asked = {figure.name for figure in design.mount.unsure} & table
-    figures = {name for name in words(root) if "_" in name or name == "bolt"}
-    assert figures == asked | {"bolt"}
-    assert "depth of the thread" in words(root)
+    needed = set(re.findall(r"(?<=<td>)\w+_mm(?=, plus)", step))
+    figures = {name for name in words(root) if name.endswith(("_mm", "_deg")) or name == "bolt"}
+    assert figures == asked | needed | {"bolt"}
+    into_mm = design.mount.bolt_length_mm - design.mount.land_mm
+    assert f"{design.mount.bolt}, {into_mm:.1f} mm into it" in words(root)
 
 
 def test_the_foot_is_to_scale(folder: Path) -> None:
@@ -131,6 +134,9 @@ def test_a_worn_skin_is_cut_round_the_board(folder: Path) -> None:
     scale, box = float(root.attrib["data-scale"]), design.board.box
     (cut,) = group(root, "cut")
     edge = points(cut) / scale
+    notch = design.emitter.notch
+    over = shapely.LineString(edge) & shapely.box(*notch.grown(-0.1).bounds_mm)
+    assert over.is_empty
     assert edge.min(axis=0) == pytest.approx((box.x_min_mm, box.y_min_mm), abs=0.02)
     assert edge.max(axis=0) == pytest.approx((box.x_max_mm, box.y_max_mm), abs=0.02)
     rings = "".join(path.attrib["d"] for path in group(root, "plugs"))

@@ -12,7 +12,6 @@ from lumitip_fab.checks import keys, plate, printed, tip
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, section
 from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
-from lumitip_fab.checks.spans import longest_span_mm
 from lumitip_fab.checks.walls import MESH_MM, Exempt, Mask, beside, measure_relief, walls
 from lumitip_fab.design import Design, Finger, Letter
 from lumitip_fab.design.cabling import THREAD_MM, outer_mm
@@ -177,10 +176,8 @@ def measure_print(part: printed.Printed) -> Iterator[Measurement]:
     """One closed body; overhang, and contact with the print bed."""
     most = PUBLISHED_OVERHANG_MM2 if part.kind == part.design.held else FLAT_OVERHANG_MM2
     yield from printed.measure_closed(part, part.standing)
-    yield from printed.measure_bed(part, part.standing, most, LEAST_BED_MM2)
-    span, at_mm = longest_span_mm(part.standing, part.design.printing)
-    note = f"longest line over nothing, {at_mm:.1f} mm over the bed"
-    yield part.figure("span", span, 0.0, part.design.printing.bridge_mm, note=note)
+    printing = part.design.printing
+    yield from printed.measure_bed(part, part.standing, printing, most, LEAST_BED_MM2)
 
 
 def measure_size(part: printed.Printed) -> Iterator[Measurement]:

@@ -94,7 +94,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 def _prints(of: Subject, standing: Any, design: Design) -> Iterator[Measurement]:
     """One closed body that lies on the bed with its back, and its walls."""
     yield from measure_closed(of, standing)
-    yield from measure_bed(of, standing, 0.1, LEAST_BED_MM2)
+    yield from measure_bed(of, standing, design.printing, 0.1, LEAST_BED_MM2)
     left = np.array(design.printing.bed_mm) - standing.extents
     yield of.figure("fits_bed", left.min(), 0, math.inf, note="room left")
     yield from walls("clamp.min_wall", of.subject, standing, design.printing.min_wall_mm, ())

@@ -16,7 +16,6 @@ from lumitip_fab.checks.printed import (
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, section
 from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
-from lumitip_fab.checks.spans import longest_span_mm
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
@@ -74,10 +73,8 @@ def measure_print(plate: FitCoupons) -> Iterator[Measurement]:
     shown = len(plate.mounted(0, mount.bolt_u_mm)) if mount.sleeved else 0
     rings = [np.pi / 4 * (f.gripper_pin_mm**2 - f.bolt_hole_mm**2) for f in wanted.steps]
     most = pins + RINGS * shown * float(sum(rings))
-    yield from measure_bed(plate, mesh, most, LEAST_BED_MM2 * len(wanted.steps))
-    span, at_mm = longest_span_mm(mesh, design.printing)
-    note = f"longest line over nothing, {at_mm:.1f} mm over the bed"
-    yield plate.figure("span", span, 0.0, design.printing.bridge_mm, note=note)
+    least = LEAST_BED_MM2 * len(wanted.steps)
+    yield from measure_bed(plate, mesh, design.printing, most, least)
 
 
 def measure_bolts(plate: FitCoupons) -> Iterator[Measurement]:

@@ -76,7 +76,7 @@ def _printed(subject: str, lying: Any, design: Design) -> Iterator[Measurement]:
     of = Subject("flange", subject)
     yield of.figure("readable", len(lying.faces), 4, math.inf, "triangles")
     yield from measure_closed(of, lying)
-    yield from measure_bed(of, lying, MOST_OVERHANG_MM2, LEAST_BED_MM2)
+    yield from measure_bed(of, lying, design.printing, MOST_OVERHANG_MM2, LEAST_BED_MM2)
     yield from walls("flange.min_wall", subject, lying, design.printing.min_wall_mm, ())
 
 

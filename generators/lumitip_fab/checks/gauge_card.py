@@ -139,7 +139,7 @@ def _prints(standing: Any, card: GaugeCard, design: Design) -> Iterator[Measurem
     """One closed body that lies on the bed with its blade's face, and its walls."""
     of = Subject("gauge_card", card.file)
     yield from measure_closed(of, standing)
-    yield from measure_bed(of, standing, 0.1, LEAST_BED_MM2)
+    yield from measure_bed(of, standing, design.printing, 0.1, LEAST_BED_MM2)
     left = np.array(design.printing.bed_mm) - standing.extents
     yield of.figure("fits_bed", left.min(), 0, math.inf, note="room left")
     blade = Exempt("blade", card.blade_mm, lambda at: at[:, 2] < card.blade_mm + _NEAR_MM)

@@ -76,10 +76,10 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 
 def measure_print(clip: Clip) -> Iterator[Measurement]:
     """One closed body that prints standing, and its walls."""
-    least = clip.design.printing.min_wall_mm
+    printing, roofs = clip.design.printing, ROOFS * _roofs_mm2(clip.holder)
     yield from measure_closed(clip, clip.standing)
-    yield from measure_bed(clip, clip.standing, ROOFS * _roofs_mm2(clip.holder), LEAST_BED_MM2)
-    yield from walls("holder.min_wall", clip.subject, clip.standing, least, ())
+    yield from measure_bed(clip, clip.standing, printing, roofs, LEAST_BED_MM2)
+    yield from walls("holder.min_wall", clip.subject, clip.standing, printing.min_wall_mm, ())
 
 
 def measure_tray(clip: Clip) -> Iterator[Measurement]:

@@ -12,7 +12,8 @@ from scipy.spatial import cKDTree
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, section
 from lumitip_fab.checks.result import Clearance, Measurement, Subject, farthest
-from lumitip_fab.design import Design, Fastener, Finger, Point
+from lumitip_fab.checks.spans import longest_span_mm
+from lumitip_fab.design import Design, Fastener, Finger, Point, Printing
 from lumitip_fab.design.frames import Matrix
 
 RAY_MM = 5.0  # rays start this far in front of the rim
@@ -110,10 +111,20 @@ def measure_closed(of: Subject, mesh: Any, bodies: int = 1) -> Iterator[Measurem
     yield of.figure("bodies", solids.bodies(mesh), bodies, bodies, "bodies")
 
 
-def measure_bed(of: Subject, mesh: Any, most: float, least: float) -> Iterator[Measurement]:
+def measure_bed(
+    of: Subject, mesh: Any, printing: Printing, most: float, least: float
+) -> Iterator[Measurement]:
     """Overhang of a mesh that stands on its bed, and what lies on the bed (mm²)."""
     yield of.figure("overhang", solids.overhang_mm2(mesh), 0, most, "mm²")
+    yield measure_span(of, mesh, printing)
     yield of.figure("bed_contact", solids.bed_contact_mm2(mesh), least, math.inf, "mm²")
+
+
+def measure_span(of: Subject, mesh: Any, printing: Printing) -> Measurement:
+    """The longest line of a mesh on its bed that is laid over nothing."""
+    span, at_mm = longest_span_mm(mesh, printing)
+    note = f"longest line over nothing, {at_mm:.1f} mm over the bed"
+    return of.figure("span", span, 0.0, printing.bridge_mm, note=note)
 
 
 def apart_mm(found: Vectors, wanted: Vectors) -> float:

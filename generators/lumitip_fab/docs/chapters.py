@@ -171,7 +171,7 @@ def _run(design: Design) -> str:
         "run",
         warm_up_min=WARM_UP_MIN,
         minutes=RUN_MIN + ACCEPT_MIN * cards,
-        gauge="\n![The gauge card on the receiver, end E down](manual/gauge.svg)" * cards,
+        gauge=_text("gauge_shown") * cards,
         gauged=", the gauge card, thin sheet metal" * cards,
         supply="the robot's tool output" if design.flanges else "the LEDs' supply",
         accepted="\n" + _text("accepted", accept_min=ACCEPT_MIN).strip() if cards else "",

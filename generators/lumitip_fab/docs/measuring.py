@@ -1,8 +1,8 @@
 """The manual's step of measuring the gripper and its coupling before parts are printed for them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from lumitip_fab.design import Design, Flange, Unsure
+from lumitip_fab.design import Design, Flange, Mount, Unsure
 from lumitip_fab.design.mount import NOT_PRINTED
 from lumitip_fab.docs.flange import gripper_cable
 from lumitip_fab.text import as_written, passage, table_of
@@ -36,13 +36,22 @@ def _rows(design: Design) -> Iterator[str]:
     yield _row("depth of the gripper's thread", bolt, "unknown", texts["depth"])
     how = table_of(_GRIPPERS)["figures"]
     for figure in mount.to_measure:
-        yield _row(f"`{figure.name}`", figure.value, figure.confidence, how[figure.name])
+        yield _row(
+            f"`{figure.name}`", figure.value, figure.confidence, _how(how, figure.name, mount)
+        )
     for figure in _body(design):
         yield _row(f"`{figure.name}`", figure.value, figure.confidence, texts["body"])
     for flange in design.flanges:
         for figure in _of_coupling(flange):
             how_to = texts["coupling"][figure.name]
             yield _row(f"`{figure.name}`", figure.value, figure.confidence, how_to)
+
+
+def _how(texts: Mapping[str, str], figure: str, mount: Mount) -> str:
+    """How a figure is measured, with the value of another one that is part of it."""
+    others = [name for name in texts if texts[figure].startswith(f"{name}, ")]
+    values = (f" Here `{name}` is {getattr(mount, name):g}." for name in others)
+    return texts[figure] + "".join(values)
 
 
 def _of_coupling(flange: Flange) -> list[Unsure]:

@@ -91,8 +91,8 @@ def _across(target: Target, window: Box) -> list[tuple[float, float]]:
 
 
 def _letter(card: GaugeCard, letter: str) -> list[Solid]:
-    """Cutters of a letter in the frame's bar at the gripper end of end E, on the bed; none where it
-    would be too small."""
+    """Cutters of a letter in the frame's bar at the gripper end of end E, in the face that lies on
+    the finger and is up on the bed; none where it would be too small."""
     if not card.letter_mm:
         return []
     high, middle = card.letter_mm, (card.low_y_mm + card.window.y_min_mm) / 2

@@ -13,13 +13,17 @@ from lumitip_fab.scenes.dimensions import circle
 from lumitip_fab.scenes.drawing import Points, Sheet, View
 from lumitip_fab.scenes.finger_views import paint
 
-SCALE = 1.5
+SCALE = 1.1
 ANGLE_DEG = 25.0
 """Of the card's edge."""
 LIGHT, DARK = (240, 229, 115), (3, 32, 77)
 _FRONT = View(np.eye(3)).enlarged(SCALE)
+_WORDS = 1.3
 _CARD, _EDGE_MM = "#f3ead2", 60.0
-_BESIDE_MM, _PAST_MM, _NAME_MM = 14.0, 12.0, 5.0
+_BESIDE_MM, _PAST_MM, _NAME_MM = 14.0, 12.0, 6.5
+_TURNS = np.arange(6) * math.pi / 3
+_HEXAGON = 2 / math.sqrt(3) * np.column_stack([np.cos(_TURNS), np.sin(_TURNS)])
+"""Of the width 2, two of its corners on x."""
 _SHARE = 0.94  # of the room of a cell in the picture
 
 
@@ -31,7 +35,7 @@ def card_view(finger: Finger, layers: Mapping[str, Mesh], holes_mm: Sequence[flo
         layers: interface, backing, film and so on in the sensor frame, from the back.
         holes_mm: size of the hole at each cell.
     """
-    sheet, cells = Sheet(), np.array(finger.cells)
+    sheet, cells = Sheet(words_scale=_WORDS), np.array(finger.cells)
     seen = {k: layers[k] for k in ("interface", "backing", "film") if k in layers}
     with sheet.group("finger"):
         paint(sheet, _FRONT, seen)
@@ -50,7 +54,7 @@ def card_view(finger: Finger, layers: Mapping[str, Mesh], holes_mm: Sequence[flo
     right += SCALE * radius
     with sheet.group("picture"):
         for cell in cells:
-            room = shapely.Point(cell).buffer(_SHARE * radius, quad_segs=12)
+            room = shapely.Polygon(cell + _SHARE * radius * _HEXAGON)
             free = 1.0 - (room & card).area / room.area
             ring = SCALE * np.array(room.exterior.coords) + np.array([right, 0.0])
             sheet.area([ring], "part", _colour(free))
@@ -59,7 +63,7 @@ def card_view(finger: Finger, layers: Mapping[str, Mesh], holes_mm: Sequence[flo
     half = SCALE * (np.ptp(cells[:, 0]) / 2 + 2 * radius) / math.cos(math.radians(ANGLE_DEG))
     ends = [side * half * way / np.linalg.norm(way) for side in (-1, 1)]
     at = SCALE * middle + np.array([right, 0.0])
-    sheet.lines([np.array([at + end for end in ends])], "mark")
+    sheet.lines([np.array([at + end for end in ends])], "estimate")
     foot = float(sheet.low[1]) - _NAME_MM
     for x, name in ((SCALE * middle[0], "The card, seen from the front"), (at[0], "The picture")):
         sheet.words(float(x), foot, name, "name", "middle")

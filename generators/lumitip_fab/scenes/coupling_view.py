@@ -17,6 +17,7 @@ from lumitip_fab.scenes.dimensions import (
     line,
     pointers,
     rectangle,
+    write,
 )
 from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, visible_lines
 
@@ -28,9 +29,10 @@ LEAST_MM = 1.5  # of a line that is drawn: shorter ones are the ends of hidden e
 PAPER, CUT = "#f4f6f8", "#cfd9e2"
 GAP_MM = 8.0
 """From a view to its first dimension."""
+_FOOT_MM = 6.0  # from the lowest dimension to what the views are
 _NAMES_MM = 48.0  # width of the names between two views
-THREAD = "depth of the thread"
-"""Name of the room that the gripper's thread must have for a bolt, from the mount face on."""
+THREAD = "thread"
+"""Among the figures that are shown: how far the bolt goes into the gripper."""
 Label = tuple[str, Point]
 
 
@@ -46,7 +48,11 @@ def coupling_view(mount: Mount, foot: Mesh, figures: Container[str]) -> str:
     wide = max(mount.seat_width_mm, mount.block_width_mm) / 2
     _face(sheet, mount, foot, wide, figures)
     thread = mount.bolt_length_mm - mount.land_mm if THREAD in figures else 0.0
-    _section(sheet, mount, foot, wide + thread + (_NAMES_MM + 22.0) / SCALE, figures)
+    right = wide + thread + (_NAMES_MM + 22.0) / SCALE
+    _section(sheet, mount, foot, right, figures)
+    low = float(sheet.low[1]) - _FOOT_MM
+    write(sheet, (0.0, low), "seen from the gripper", "middle")
+    write(sheet, (SCALE * right, low), "section: gripper on the left, tip on the right", "middle")
     return sheet.svg({})
 
 
@@ -183,19 +189,20 @@ def _section(sheet: Sheet, m: Mount, foot: Mesh, right: float, figures: Containe
             line(_page(right - 3, m.bolt_w_mm), _page(right + high + 6, m.bolt_w_mm)),
             line(_page(right - 1, 0), _page(right + high + 6, 0)),
             line(_page(right, -3), _page(right, m.block_back_w_mm + 1)),
-            line(_page(right, 0), tip),
+            *([line(_page(right, 0), tip)] * ("tilt_deg" in figures)),
         ],
         "axis",
     )
     back, low = m.block_back_w_mm, m.bolt_w_mm + m.pin_mm / 2
     spans = [("land_mm", _page(right, back), _page(right + m.land_mm, back))]
-    above = []
+    above, into_gripper = [], []
     if THREAD in figures:
-        end, side = right + m.land_mm - m.bolt_length_mm, m.bolt_hole_mm / 2
+        into, side = m.bolt_length_mm - m.land_mm, float(m.bolt.removeprefix("M")) / 2
+        end = right - into
         bolt = rectangle((end, right), (m.bolt_w_mm - side, m.bolt_w_mm + side))
         sheet.lines([bolt * (SCALE, -SCALE)], "hidden")
         at = m.bolt_w_mm + side
-        spans.append((THREAD, _page(end, at), _page(right, at)))
+        into_gripper = [(f"{m.bolt}, {into:.1f} mm into it", _page(end, at), _page(right, at))]
     if m.pin_u_mm:
         pin = rectangle((right, right + m.pin_depth_mm), (2 * m.bolt_w_mm - low, low))
         sheet.lines([pin * (SCALE, -SCALE)], "hidden")
@@ -203,7 +210,8 @@ def _section(sheet: Sheet, m: Mount, foot: Mesh, right: float, figures: Containe
     if m.nose:
         front, top = m.nose.front_w_mm, right + m.nose.height_mm
         above.append(("nose.height_mm", _page(right, front), _page(top, front)))
-    dimension_rows(sheet, _shown(spans, figures), -SCALE * back - GAP_MM, -1)
+    below = [*_shown(spans, figures), *into_gripper]
+    dimension_rows(sheet, below, -SCALE * back - GAP_MM, -1)
     dimension_rows(sheet, _shown(above, figures), GAP_MM, 1)
     names = [("bolt", _page(right + high + 6, m.bolt_w_mm))]
     names += [("tilt_deg", tip)] * ("tilt_deg" in figures)

@@ -28,6 +28,7 @@ _STROKES = {
     "axis": f'fill="none" stroke="{_FAINT}" stroke-width=".18" stroke-dasharray="3 .8 .5 .8"',
     "hidden": f'fill="none" stroke="{_INK}" stroke-width=".18" stroke-dasharray="1.4 .8"',
     "mark": f'fill="none" stroke="#c0392b" stroke-width=".4" {_ROUND}',
+    "estimate": f'fill="none" stroke="#d81b8c" stroke-width=".8" {_ROUND}',
     "leader": f'fill="none" stroke="{_FAINT}" stroke-width=".18"',
 }
 _WORDS = {

@@ -22,7 +22,8 @@ _PLAN = View(np.eye(3)).enlarged(PLAN_SCALE)
 _LABEL_MM, _WORDS_MM = 8.0, 44.0
 _PAST_MM = 22.0  # of the cable, beyond the mount face
 _ABREAST_MM = 0.5  # from wire to wire of a cable, as it is drawn
-_NUMBER_DOWN_MM = 1.4  # of a number's base line, to have it in the middle
+_NUMBERS_SCALE = 1.25  # of the flaps: two drawings stand beside each other
+_NUMBER_DOWN_MM = 1.75  # of a number's base line, to have it in the middle
 _ANGLES = {"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG}
 _STEPS = 8  # chords of a wire from point to point
 
@@ -91,7 +92,7 @@ def folded_view(
         flaps: number and area on the back of each, as the mask's facts have them.
         lip_y_mm: where silicone that is wrapped round the tip ends, under the first flap.
     """
-    sheet = Sheet()
+    sheet = Sheet(words_scale=_NUMBERS_SCALE)
     seen = {name: layers[name] for name in ("backing", "interface") if name in layers}
     paint(sheet, _PLAN, {name: mesh.moved(_BEHIND) for name, mesh in seen.items()})
     laid = sorted((f for f in flaps if f["on_back"]), key=lambda flap: int(flap["number"]))

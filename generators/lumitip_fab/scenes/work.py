@@ -29,6 +29,7 @@ from lumitip_fab.scenes.mould_view import mould_view
 from lumitip_fab.scenes.plate_view import plate_view
 from lumitip_fab.scenes.skin_view import skin_view
 from lumitip_fab.scenes.system import finger_group, stl_mesh
+from lumitip_fab.text import table_of
 
 OFF_MM = 3.5  # from keys and stops to where a drop of silicone is tried
 
@@ -47,7 +48,7 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
         "measured": _measured(design),
         "lengths": lengths_view(design.cabling),
         "card": card_view(wired, layers[wired.name], design.mask.holes_mm),
-        "skin": skin_view(design.board, design.keys, layers[finger.name]),
+        "skin": skin_view(finger, design.board, design.keys, layers[finger.name]),
         "facing": facing_view(boards[finger.name], boards[wired.name]),
         "plate": plate_view(stl_mesh(files, "fit/fit_plate.stl"), design.fit_plate),
         "board": board_view(finger, layers[finger.name], boards[finger.name].parts),
@@ -79,8 +80,10 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
 
 def _measured(design: Design) -> str:
     """The foot of a finger, with the figures of the gripper's entry that are not sure."""
-    figures = {figure.name for figure in design.mount.to_measure}
-    return coupling_view(design.mount, mesh(gauge_solid(design)), {THREAD, *figures})
+    how = table_of("grippers/texts.toml")["figures"]
+    asked = {figure.name for figure in design.mount.to_measure}
+    needed = {name for name in how if any(how[figure].startswith(f"{name}, ") for figure in asked)}
+    return coupling_view(design.mount, mesh(gauge_solid(design)), {THREAD, *asked, *needed})
 
 
 def _flange(design: Design, flange: Flange, files: Files) -> str:
