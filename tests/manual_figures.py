@@ -137,6 +137,8 @@ def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
     work = (*bench, "cable", "filled", "lowered", "clamped", "lifted", "card", "skin")
     if design.packages.unmarked:
         wanted.add("manual/marks.svg")
+    if design.holders:
+        wanted.add("manual/holder.svg")
     if design.gauge_cards:
         wanted.add("manual/gauge.svg")
     wanted |= {f"manual/{name}.svg" for name in work}

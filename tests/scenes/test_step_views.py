@@ -17,6 +17,7 @@ from lumitip_fab.design import Design
 from lumitip_fab.design.cabling import COLOURS, STRIP_MM, codes_of
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.scenes.coupling_view import SCALE as COUPLING_SCALE
+from lumitip_fab.scenes.holder_view import _loops
 from lumitip_fab.scenes.marks_view import MARK, PROBES, marks_view
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -127,6 +128,27 @@ def test_the_gauge_card_is_drawn_where_there_is_one(folder: Path) -> None:
     if design.gauge_cards:
         _, root = drawn(folder, "gauge")
         assert {"Stop", "Edge", "Rails"} <= words(root)
+
+
+def test_a_loop_of_ties_goes_through_both_lugs_behind_the_gripper(folder: Path) -> None:
+    design = read_design(folder / "design.json")
+    assert (folder / "manual/holder.svg").exists() == bool(design.holders)
+    for holder in design.holders:
+        _, root = drawn(folder, "holder")
+        ties = [p for p in group(root, "ties") if p.attrib.get("stroke-width") == ".8"]
+        assert len(ties) == len(_loops(holder)) == len(holder.arm_lugs) / 2
+        for loop in _loops(holder):
+            length_mm = np.linalg.norm(np.diff(loop, axis=0), axis=1).sum()
+            assert length_mm == pytest.approx(holder.tie_loop_mm, rel=0.05)
+            radius = np.hypot(loop[:, 0], loop[:, 1] + holder.axis_z_mm)
+            assert radius.min() > holder.body_mm / 2
+            for lug in holder.arm_lugs:
+                out, up = lug.side * loop[:, 0] - lug.face_mm, loop[:, 2]
+                box = lug.opening
+                inside = (out > box.x_min_mm) & (out < box.x_max_mm)
+                inside &= (up > box.y_min_mm) & (up < box.y_max_mm)
+                level = abs(up[0] - box.centre_mm[1]) < 0.1
+                assert not level or np.ptp(loop[inside, 1]) >= np.ptp(lug.along_mm)
 
 
 def test_a_worn_skin_is_cut_round_the_board(folder: Path) -> None:

@@ -13,8 +13,8 @@ AZIMUTH_DEG = 35.0
 ELEVATION_DEG = 24.0
 GAP_MM = 26.0  # by which the bodies are pulled apart along the axis
 ASIDE_MM = 115.0  # by which a holder is pulled off the gripper
-WORDS_SCALE = 2.4  # of a drawing that is more than twice as large as a finger's
-LABEL_MM, WORDS_MM = 12.0, 118.0
+WORDS_SCALE = 2.8  # of a drawing that is more than twice as large as a finger's
+LABEL_MM, WORDS_MM = 12.0, 130.0
 LAYERS = ("interface", "backing", "board", "silicone", "film")
 Words = tuple[str, str]
 
@@ -178,7 +178,7 @@ def _label(
     for name in system.holders:
         left.append(
             (
-                ("Controller's board", "its holder clips round the gripper"),
+                ("Controller's board", "its holder is on the gripper"),
                 _leftmost(at[f"{name}.tray"]),
             )
         )

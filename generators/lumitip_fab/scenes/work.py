@@ -23,6 +23,7 @@ from lumitip_fab.scenes.finger_views import board_view, cable_view, folded_view
 from lumitip_fab.scenes.flange_view import flange_view
 from lumitip_fab.scenes.gauge_view import gauge_view
 from lumitip_fab.scenes.glb import Group
+from lumitip_fab.scenes.holder_view import holder_view
 from lumitip_fab.scenes.lengths_view import lengths_view
 from lumitip_fab.scenes.marks_view import marks_view
 from lumitip_fab.scenes.mould_view import mould_view
@@ -67,6 +68,9 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
     for card in design.gauge_cards:
         printed = stl_mesh(files, f"gauge/{card.name}.stl")
         drawings["gauge"] = gauge_view(card, design.outline, printed, layers[wired.name])
+    for holder in design.holders:
+        printed = stl_mesh(files, f"holder/{holder.name}.stl")
+        drawings["holder"] = holder_view(holder, printed)
     for flange in design.flanges:
         drawings |= {flange.name: _flange(design, flange, files), "contacts": contacts_view(flange)}
     for name, seen in layers.items():
