@@ -54,7 +54,7 @@ def _pins(parts: tuple[Component, ...]) -> dict[str, list[tuple[str, str]]]:
 def test_current_passes_every_led_of_a_string_once(designs: dict[str, Design], preset: str) -> None:
     design = designs[preset]
     pins = _pins(_circuit(design, "emitter"))
-    supply = design.emitter.connector.signals[1]
+    supply = design.emitter.connector.supply
     seen = []
     for number, string in enumerate(design.wiring.strings, start=1):
         net = f"S{number}_0"

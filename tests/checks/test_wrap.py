@@ -27,7 +27,7 @@ pytestmark = pytest.mark.slow
 Damage = Callable[[Body], Body]
 PROP, MOULD = "mould/prop.stl", "mould/receiver_mould.stl"
 BACKING = "backing/receiver_backing.stl"
-EVERY = {"prop", "slots", "level", "lip", "held"}
+EVERY = {"prop", "span", "slots", "level", "lip", "held"}
 
 
 @pytest.fixture

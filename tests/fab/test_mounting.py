@@ -34,16 +34,10 @@ def steps(design: Design) -> str:
 
 def work(design: Design) -> str:
     """The steps of flange and mounting, with their lines."""
-    flanges = (
-        step
-        for flange in design.flanges
-        for step in (
-            coupling_step(design, flange),
-            flange_board_step(design, flange, ""),
-            flange_step(design, flange),
-        )
-    )
-    return "\n\n".join([*flanges, *mounting_steps(design)])
+    steps = [coupling_step(design, flange) for flange in design.flanges]
+    steps += [flange_board_step(design, flange, "") for flange in design.flanges]
+    steps += [flange_step(design, flange) for flange in design.flanges]
+    return "\n\n".join([*steps, *mounting_steps(design)])
 
 
 def words(text: str) -> str:

@@ -104,20 +104,24 @@ def test_the_picture_is_dark_where_the_card_is(folder: Path) -> None:
     scale = float(root.attrib["data-scale"])
     assert moved == pytest.approx(scale * (cells - cells.mean(axis=0)), abs=0.05)
     (card,) = group(root, "card")
-    top = points(card)
+    corners = points(card)
     lightness = {}
     for cell, circle in zip(cells, circles, strict=True):
         fill = circle.attrib["fill"]
         lightness[tuple(cell)] = sum(int(fill[k : k + 2], 16) for k in (1, 3, 5))
-    left, right = top[top[:, 0].argmin()], top[top[:, 1].argmax()]
-    slope = (right[1] - left[1]) / (right[0] - left[0])
-    assert math.degrees(math.atan(slope)) == pytest.approx(25.0, abs=15.0)
+    edges = np.roll(corners, -1, axis=0) - corners
+    edge = int(np.hypot(*edges.T).argmax())
+    slope = edges[edge, 1] / edges[edge, 0]
+    assert math.degrees(math.atan(slope)) == pytest.approx(
+        float(root.attrib["data-angle-deg"]), abs=0.1
+    )
+    seen = set()
     for (x, y), light in lightness.items():
-        over = scale * y - (right[1] + slope * (scale * x - right[0]))
-        if over > 0.7 * scale * design.layout.pitch_mm:
-            assert light > 400
-        if over < -0.7 * scale * design.layout.pitch_mm:
-            assert light < 150
+        over = scale * y - (corners[edge, 1] + slope * (scale * x - corners[edge, 0]))
+        if abs(over) > 0.7 * scale * design.layout.pitch_mm:
+            assert light > 400 if over > 0 else light < 150
+            seen.add(over > 0)
+    assert seen == {True, False}
 
 
 def test_the_gauge_card_is_drawn_where_there_is_one(folder: Path) -> None:

@@ -6,7 +6,7 @@ Everything is measured in the frame of the mould's bed, for both fingers.
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -94,7 +94,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 def _prints(of: Subject, standing: Any, design: Design) -> Iterator[Measurement]:
     """One closed body that lies on the bed with its back, and its walls."""
     yield from measure_closed(of, standing)
-    yield from measure_bed(of, standing, design.printing, 0.1, LEAST_BED_MM2)
+    printing = replace(design.printing, layer_mm=design.mould.layer_mm)
+    yield from measure_bed(of, standing, printing, 0.1, LEAST_BED_MM2)
     left = np.array(design.printing.bed_mm) - standing.extents
     yield of.figure("fits_bed", left.min(), 0, math.inf, note="room left")
     yield from walls("clamp.min_wall", of.subject, standing, design.printing.min_wall_mm, ())

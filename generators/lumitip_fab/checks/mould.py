@@ -83,7 +83,7 @@ def _measured(
     room = np.array(design.printing.bed_mm) - mesh.extents
     yield of.figure("fits_bed", room.min(), 0, math.inf, note="room left")
     yield of.near("fits_bed", mesh.bounds[0, 2], 0, 0.001, "height over the bed", at="foot")
-    yield measure_span(of, mesh, design.printing)
+    yield measure_span(of, mesh, design.printing, design.mould.layer_mm)
     probe = Probe(mesh, design)
     yield _thickness(probe, file)
     yield _tip_thickness(probe, file)

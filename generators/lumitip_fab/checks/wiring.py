@@ -105,7 +105,7 @@ def _beside_supply(nets: Nets, design: Design) -> list[str]:
             row = {
                 int(pad.partition(".")[2]): net
                 for pad, net in of.items()
-                if pad.startswith(f"{ref}.")
+                if re.fullmatch(rf"{ref}\.\d+", pad)
             }
             carried = [row[number].removesuffix(_BEFORE_FUSE) for number in sorted(row)]
             wrong += [

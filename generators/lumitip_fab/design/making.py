@@ -178,6 +178,12 @@ class HeatedPart:
     limit_c: float
     """Highest temperature that its material bears in this step (°C)."""
 
+    @property
+    def title(self) -> str:
+        """Its name and material, such as "board of FR-4"; a material that says what it is alone."""
+        alone = self.name in self.material
+        return self.material if alone else f"{self.name} of {self.material}"
+
 
 @dataclass(frozen=True)
 class HeatStep:

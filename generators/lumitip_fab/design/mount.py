@@ -7,10 +7,7 @@ from lumitip_fab.catalogue.record import TRUSTED
 from lumitip_fab.design.making import Letter
 from lumitip_fab.design.shape import Box, Point
 from lumitip_fab.design.tie_lug import TieLug
-from lumitip_fab.text import table_of
 
-NOT_PRINTED = {"force_n", "stroke_mm", "height_mm", "robot_mm", "iso"}
-"""Figures of gripper and coupling that no printed part rests on."""
 _FLARE_THINS = 0.4  # of its depth at the ramp, where a flare ends: the bending moment thins so
 
 
@@ -23,6 +20,10 @@ class Unsure:
     value: str
     """Its value in the entry, with its unit."""
     confidence: str
+    measured: bool = True
+    """Whether a printed part rests on it, and it is not chosen."""
+    others: tuple[tuple[str, str], ...] = ()
+    """Name and value of other figures that it is measured from."""
 
 
 @dataclass(frozen=True)
@@ -90,9 +91,13 @@ class Mount:
 
     @property
     def to_measure(self) -> tuple[Unsure, ...]:
-        """Those of them that printed parts rest on; a figure that is chosen is not measured."""
-        without = {*table_of("grippers/texts.toml")["chosen"], *NOT_PRINTED}
-        return tuple(figure for figure in self.unsure if figure.name not in without)
+        """Those of them that are measured before parts are printed."""
+        return tuple(figure for figure in self.unsure if figure.measured)
+
+    @property
+    def into_gripper_mm(self) -> float:
+        """How far the bolts go into the gripper."""
+        return self.bolt_length_mm - self.land_mm
 
     @property
     def flare_end_mm(self) -> float:

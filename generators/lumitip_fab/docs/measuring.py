@@ -1,9 +1,8 @@
 """The manual's step of measuring the gripper and its coupling before parts are printed for them."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
-from lumitip_fab.design import Design, Flange, Mount, Unsure
-from lumitip_fab.design.mount import NOT_PRINTED
+from lumitip_fab.design import Design, Flange, Unsure
 from lumitip_fab.docs.flange import gripper_cable
 from lumitip_fab.text import as_written, passage, table_of
 
@@ -31,13 +30,12 @@ def measuring(design: Design) -> str:
 def _rows(design: Design) -> Iterator[str]:
     """The finger bolts, then the figures of gripper, body and coupling."""
     mount, texts = design.mount, table_of(_OTHERS)
-    into_mm = mount.bolt_length_mm - mount.land_mm
-    bolt = f"{mount.bolt} x {mount.bolt_length_mm:g}, {into_mm:.1f} mm into it"
+    bolt = f"{mount.bolt} x {mount.bolt_length_mm:g}, {mount.into_gripper_mm:.1f} mm into it"
     yield _row("depth of the gripper's thread", bolt, "unknown", texts["depth"])
     how = table_of(_GRIPPERS)["figures"]
     for figure in mount.to_measure:
         yield _row(
-            f"`{figure.name}`", figure.value, figure.confidence, _how(how, figure.name, mount)
+            f"`{figure.name}`", figure.value, figure.confidence, how[figure.name] + _others(figure)
         )
     for figure in _body(design):
         yield _row(f"`{figure.name}`", figure.value, figure.confidence, texts["body"])
@@ -47,16 +45,14 @@ def _rows(design: Design) -> Iterator[str]:
             yield _row(f"`{figure.name}`", figure.value, figure.confidence, how_to)
 
 
-def _how(texts: Mapping[str, str], figure: str, mount: Mount) -> str:
-    """How a figure is measured, with the value of another one that is part of it."""
-    others = [name for name in texts if texts[figure].startswith(f"{name}, ")]
-    values = (f" Here `{name}` is {getattr(mount, name):g}." for name in others)
-    return texts[figure] + "".join(values)
+def _others(figure: Unsure) -> str:
+    """Values of the figures that it is measured from."""
+    return "".join(f" Here `{name}` is {value}." for name, value in figure.others)
 
 
 def _of_coupling(flange: Flange) -> list[Unsure]:
     """Figures that parts are printed by."""
-    return [figure for figure in flange.unsure if figure.name not in NOT_PRINTED]
+    return [figure for figure in flange.unsure if figure.measured]
 
 
 def _body(design: Design) -> list[Unsure]:

@@ -71,8 +71,8 @@ _LAYOUTS = (
     _Layout(0.6, 0.5, 4),
     _Layout(0.55, 0.5, 4, near=True),
 )
-"""From the largest to the smallest, which is taken where that saves a page: a picture of pixels has
-no words to read."""
+"""In the order in which they are tried, where one saves a page: near rows before drawings whose
+words would be small. A picture of pixels has no words to read."""
 _DPI = 200
 _TRUE_SIZE = re.compile(rb'^<svg [^>]*data-scale="1"')
 """The beginning of a drawing that a print of its page is measured by."""

@@ -47,7 +47,7 @@ LINES = TableStyle(
 NEAR_LINES = TableStyle(
     [("TOPPADDING", (0, 0), (-1, -1), 0.6), ("BOTTOMPADDING", (0, 0), (-1, -1), 0.8)], parent=LINES
 )
-"""Of a step that is as long as its page."""
+"""Tables of a step that would otherwise run on over a page."""
 BESIDE = TableStyle(
     [
         ("ALIGN", (0, 0), (-1, -1), "CENTER"),

@@ -184,7 +184,7 @@ def _creased(design: Design) -> dict[str, object]:
         "crease": passage(_TEXTS, "crease").format(
             soften_c=design.heat_steps["crease"].temperature_c
         ),
-        "weakest": f"{weakest.name} of {weakest.material}",
+        "weakest": weakest.title,
         "finger_c": weakest.limit_c,
     }
 

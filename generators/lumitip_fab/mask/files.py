@@ -26,8 +26,7 @@ def creasing_files(design: Design) -> tuple[Artefact, ...]:
     drawing = data_file("mask/creasing.svg").format(
         soften_c=design.heat_steps["crease"].temperature_c,
         film="film, printed side down" if design.mask.route == "film" else "film, inside down",
-        part=weakest.name,
-        material=escape(weakest.material),
+        title=escape(weakest.title),
         limit_c=weakest.limit_c,
     )
     return (Artefact("mask/creasing.svg", drawing.encode(), frame=""),)

@@ -47,7 +47,7 @@ def coupling_view(mount: Mount, foot: Mesh, figures: Container[str]) -> str:
     sheet = Sheet()
     wide = max(mount.seat_width_mm, mount.block_width_mm) / 2
     _face(sheet, mount, foot, wide, figures)
-    thread = mount.bolt_length_mm - mount.land_mm if THREAD in figures else 0.0
+    thread = mount.into_gripper_mm if THREAD in figures else 0.0
     right = wide + thread + (_NAMES_MM + 22.0) / SCALE
     _section(sheet, mount, foot, right, figures)
     low = float(sheet.low[1]) - _FOOT_MM
@@ -197,7 +197,7 @@ def _section(sheet: Sheet, m: Mount, foot: Mesh, right: float, figures: Containe
     spans = [("land_mm", _page(right, back), _page(right + m.land_mm, back))]
     above, into_gripper = [], []
     if THREAD in figures:
-        into, side = m.bolt_length_mm - m.land_mm, float(m.bolt.removeprefix("M")) / 2
+        into, side = m.into_gripper_mm, float(m.bolt.removeprefix("M")) / 2
         end = right - into
         bolt = rectangle((end, right), (m.bolt_w_mm - side, m.bolt_w_mm + side))
         sheet.lines([bolt * (SCALE, -SCALE)], "hidden")

@@ -10,7 +10,7 @@ from lumitip_fab.scenes.drawing import Points, Sheet
 
 Span = tuple[str, Point, Point]
 """Name of a dimension, and the two points on the page between which it is measured."""
-WORDS_MM = 3.4
+WORDS_MM = 4.0
 LETTER_MM = 0.56 * WORDS_MM  # mean width of a letter
 STEP_MM = 6.5  # from row to row
 _ARROW_MM, _BEYOND_MM, _GAP_MM = 2.2, 1.2, 0.8

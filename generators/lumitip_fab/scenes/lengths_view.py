@@ -58,7 +58,8 @@ def _cable(sheet: Sheet, cable: Cable, scale: float, top: float) -> float:
         sheet.wire(line((0.0, y), (end, y)), inks(wire.colour))
     low = top - _WIRE_MM * (len(cable.wires) - 1)
     middle, right = (top + low) / 2, WIDTH_MM + _NAME_MM
-    cut = f"{cable.name}: {len(cable.wires)} wires of {cable.length_mm:g} mm"
+    count = len(cable.wires)
+    cut = f"{cable.name}: {count} wire{'s' * (count > 1)} of {cable.length_mm:g} mm"
     sheet.words(right, middle + 0.4, cut, "name", "start")
     where = f"{cable.start.board} to {cable.end.board}"
     sheet.words(right, middle - 4.2, where, "detail", "start")

@@ -30,7 +30,6 @@ from lumitip_fab.scenes.mould_view import mould_view
 from lumitip_fab.scenes.plate_view import plate_view
 from lumitip_fab.scenes.skin_view import skin_view
 from lumitip_fab.scenes.system import finger_group, stl_mesh
-from lumitip_fab.text import table_of
 
 OFF_MM = 3.5  # from keys and stops to where a drop of silicone is tried
 
@@ -84,10 +83,9 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
 
 def _measured(design: Design) -> str:
     """The foot of a finger, with the figures of the gripper's entry that are not sure."""
-    how = table_of("grippers/texts.toml")["figures"]
-    asked = {figure.name for figure in design.mount.to_measure}
-    needed = {name for name in how if any(how[figure].startswith(f"{name}, ") for figure in asked)}
-    return coupling_view(design.mount, mesh(gauge_solid(design)), {THREAD, *asked, *needed})
+    asked = design.mount.to_measure
+    shown = {figure.name for figure in asked} | {name for f in asked for name, _ in f.others}
+    return coupling_view(design.mount, mesh(gauge_solid(design)), {THREAD, *shown})
 
 
 def _flange(design: Design, flange: Flange, files: Files) -> str:

@@ -2,7 +2,7 @@
 
 ```
 ┌────────────────────────────────┐
-│ [GND 24V LED] R►| [GND 24V 5V] │  wires to the emitter and from the flange, power LED
+│ [24V GND LED] R►| [24V GND 5V] │  wires to the emitter and from the flange, power LED
 │  ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ │  a pad for each pin of the controller
 │  □ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ │  socket
 │   ·                        ·   │  screw holes; between the sockets parts at the pins

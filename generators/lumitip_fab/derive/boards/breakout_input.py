@@ -2,7 +2,7 @@
 feed the board and the sockets.
 
 ```
-   R R   ○ [GND 24V 5V] ○     wires, and holes for their thread
+   R R   ○ [24V GND 5V] ○     wires, and holes for their thread
   [ D1 ]                Z     ESD diode of the 5 V
           Q1   [ F1 ]
  ○ ○ ○ ○ ○ ○ ○ ○ ○ ○          pads beside the socket

@@ -77,6 +77,7 @@ _OTHER = {
     "insulation": "wires with another insulation, with its limit_c in parts/packs.toml",
     "primer": "another primer (mould.primer)",
     "tape": "another tape (mould.tape)",
+    "thread": "another thread, with its limit_c in parts/packs.toml",
 }
 """Other parts that can be chosen beside a silicone."""
 
