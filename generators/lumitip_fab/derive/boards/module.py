@@ -160,7 +160,7 @@ def _beside(config: Input) -> tuple[Component, ...]:
         capacitor(config, "C10", p.supply_capacitor, ("VUSB", "GND"), (-11.2, 10.2), 90.0),
         chip("Y1", "crystal", value, entry, ("XL1", "XL2"), (-11.3, -7.2), 90.0),
         capacitor(config, "C8", p.crystal_capacitor, ("XL1", "GND"), (-11.3, -11.4), 270.0),
-        capacitor(config, "C9", p.crystal_capacitor, ("XL2", "GND"), (-11.4, -3.4), 270.0),
+        capacitor(config, "C9", p.crystal_capacitor, ("XL2", "GND"), (-11.4, -3.7), 270.0),
     )
 
 
