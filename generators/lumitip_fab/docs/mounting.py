@@ -17,7 +17,7 @@ def mounting_steps(design: Design) -> Iterator[str]:
     """The controller's board and the gripper, then the fingers."""
     yield _text(
         "gripper_step",
-        held=f"{_text('held')}\n\n" * len(design.holders),
+        held=_text("held") * len(design.holders),
         title="Mount the controller" if design.holders else "Try the gripper",
         work=numbered(_gripper_work(design)),
         needs=", ".join(["the keys and screwdrivers", *_gripper_needs(design)]),
