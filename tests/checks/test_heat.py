@@ -136,13 +136,13 @@ def test_a_step_that_is_too_hot_is_refused(
         (
             "primers",
             "DOWSIL PR-1200",
-            "primer of silicone primer DOWSIL PR-1200",
+            "silicone primer DOWSIL PR-1200",
             "another primer (mould.primer)",
         ),
         (
             "tapes",
             "polyimide tape",
-            "tape of polyimide tape 12 mm with silicone adhesive",
+            "polyimide tape 12 mm with silicone adhesive",
             "another tape (mould.tape)",
         ),
         ("packs", "stranded wire", "insulation of stranded wire", "wires with another insulation"),
@@ -164,7 +164,7 @@ def test_a_bendable_plate_counts_its_thread(design_dir: Path) -> None:
     with pytest.raises(InputError) as refusal:
         derive(with_entry(flex, "packs", "waxed thread", limit_c=22.0))
     (problem,) = refusal.value.problems
-    assert "the thread of waxed thread withstands 22 °C" in problem.message
+    assert "the waxed thread withstands 22 °C" in problem.message
 
 
 def test_every_material_of_the_catalogue_has_a_limit(published: Input) -> None:

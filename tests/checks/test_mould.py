@@ -76,6 +76,10 @@ def sprue_added(part: Manifold) -> Manifold:
     return part + box((-130, 38, 0), (130, 41, 2))
 
 
+def beam_over_nothing(part: Manifold) -> Manifold:
+    return part + box((10, 38, 1.5), (60, 41, 4))
+
+
 def post_added(part: Manifold) -> Manifold:
     return part + box((-3, 33.15, 3.5), (3, 35.4, 25))
 
@@ -117,7 +121,8 @@ SOLID = {
     wall_overhanging: {"undercut"},
     wall_thin: {"min_wall"},
     island_added: {"bodies"},
-    sprue_added: {"fits_bed", "span"},
+    sprue_added: {"fits_bed"},
+    beam_over_nothing: {"span"},
     post_added: {"seat"},
     squashed: {"thickness", "tip_thickness", "stops", "volume", "grip"},
     tilted: {"stops", "draft", "undercut", "letter"},
