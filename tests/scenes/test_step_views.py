@@ -19,15 +19,10 @@ from lumitip_fab.design.encoding import read_design
 from lumitip_fab.scenes.coupling_view import SCALE as COUPLING_SCALE
 from lumitip_fab.scenes.holder_view import _loops
 from lumitip_fab.scenes.marks_view import MARK, PROBES, marks_view
-
-SVG = "{http://www.w3.org/2000/svg}"
-PRESETS = [
-    "published",
-    *(pytest.param(name, marks=pytest.mark.slow) for name in ("flex", "wsg50", "robotiq_2f140")),
-]
+from work_drawings import SVG, drawn, published_and, words
 
 
-@pytest.fixture(params=PRESETS)
+@pytest.fixture(params=published_and("flex", "wsg50", "robotiq_2f140"))
 def folder(request: pytest.FixtureRequest, built: Callable[[str], Path]) -> Path:
     return built(request.param)
 
@@ -37,19 +32,15 @@ def published() -> Design:
     return derive(load(Path(__file__).parents[2] / "design/presets/published.toml"))
 
 
-def drawn(folder: Path, name: str) -> tuple[Design, XmlTree.Element]:
-    design = read_design(folder / "design.json")
-    return design, XmlTree.parse(folder / f"manual/{name}.svg").getroot()
+def read(folder: Path, name: str) -> tuple[Design, XmlTree.Element]:
+    """The design, and a drawing of it."""
+    return read_design(folder / "design.json"), drawn(folder, name)
 
 
 def points(path: XmlTree.Element) -> np.ndarray:
     """Corners of a path with y up, shape `(n, 2)`."""
     pairs = re.findall(r"(-?[\d.]+),(-?[\d.]+)", path.attrib["d"])
     return np.array([(float(x), -float(y)) for x, y in pairs])
-
-
-def words(root: XmlTree.Element) -> set[str]:
-    return {str(text.text) for text in root.iter(f"{SVG}text")}
 
 
 def group(root: XmlTree.Element, name: str) -> list[XmlTree.Element]:
@@ -59,7 +50,7 @@ def group(root: XmlTree.Element, name: str) -> list[XmlTree.Element]:
 
 
 def test_the_foot_names_what_the_step_asks_for_and_nothing_else(folder: Path) -> None:
-    design, root = drawn(folder, "measured")
+    design, root = read(folder, "measured")
     html = (folder / "manual/manual.html").read_text(encoding="utf-8")
     _, _, later = html.partition("Measure your gripper</h2>")
     step = later.partition("<h2>")[0]
@@ -73,7 +64,7 @@ def test_the_foot_names_what_the_step_asks_for_and_nothing_else(folder: Path) ->
 
 
 def test_the_foot_is_to_scale(folder: Path) -> None:
-    design, root = drawn(folder, "measured")
+    design, root = read(folder, "measured")
     tips = [points(p)[0] for p in root.iter(f"{SVG}path") if p.attrib.get("fill") == "#1a1a1a"]
     ends = list(zip(tips[::2], tips[1::2], strict=True))
     lengths = [math.dist(*pair) / COUPLING_SCALE for pair in ends]
@@ -84,7 +75,7 @@ def test_the_foot_is_to_scale(folder: Path) -> None:
 
 
 def test_wires_are_as_long_and_as_coloured_as_they_are_cut(folder: Path) -> None:
-    design, root = drawn(folder, "lengths")
+    design, root = read(folder, "lengths")
     scale = float(root.attrib["data-scale"])
     for cable in design.cabling.cables:
         cores = [p for p in group(root, cable.name) if p.attrib.get("stroke-width") == ".8"]
@@ -96,7 +87,7 @@ def test_wires_are_as_long_and_as_coloured_as_they_are_cut(folder: Path) -> None
 
 
 def test_the_picture_is_dark_where_the_card_is(folder: Path) -> None:
-    design, root = drawn(folder, "card")
+    design, root = read(folder, "card")
     cells = np.array(design.receiver.cells)
     circles = group(root, "picture")
     centres = np.array([points(circle)[:-1].mean(axis=0) for circle in circles])
@@ -130,7 +121,7 @@ def test_the_gauge_card_is_drawn_where_there_is_one(folder: Path) -> None:
     assert (folder / "manual/gauge.svg").exists() == bool(design.gauge_cards)
     assert ('data-file="manual/gauge.svg"' in html) == bool(design.gauge_cards)
     if design.gauge_cards:
-        _, root = drawn(folder, "gauge")
+        _, root = read(folder, "gauge")
         assert {"Stop", "Edge", "Rails"} <= words(root)
 
 
@@ -138,7 +129,7 @@ def test_a_loop_of_ties_goes_through_both_lugs_behind_the_gripper(folder: Path) 
     design = read_design(folder / "design.json")
     assert (folder / "manual/holder.svg").exists() == bool(design.holders)
     for holder in design.holders:
-        _, root = drawn(folder, "holder")
+        _, root = read(folder, "holder")
         ties = [p for p in group(root, "ties") if p.attrib.get("stroke-width") == ".8"]
         assert len(ties) == len(_loops(holder)) == len(holder.arm_lugs) / 2
         for loop in _loops(holder):
@@ -156,7 +147,7 @@ def test_a_loop_of_ties_goes_through_both_lugs_behind_the_gripper(folder: Path) 
 
 
 def test_a_worn_skin_is_cut_round_the_board(folder: Path) -> None:
-    design, root = drawn(folder, "skin")
+    design, root = read(folder, "skin")
     scale, box = float(root.attrib["data-scale"]), design.board.box
     (cut,) = group(root, "cut")
     edge = points(cut) / scale

@@ -24,21 +24,12 @@ from lumitip_fab.scenes.clamped_view import clamped_view
 from lumitip_fab.scenes.finger_views import cable_view
 from lumitip_fab.scenes.system import finger_group
 from lumitip_fab.scenes.work import bare_spot
-
-SVG = "{http://www.w3.org/2000/svg}"
-PRESETS = [
-    "published",
-    *(pytest.param(name, marks=pytest.mark.slow) for name in ("flex", "dense", "integrated")),
-]
+from work_drawings import SVG, drawn, published_and, words
 
 
-@pytest.fixture(params=PRESETS)
+@pytest.fixture(params=published_and("flex", "dense", "integrated"))
 def folder(request: pytest.FixtureRequest, built: Callable[[str], Path]) -> Path:
     return built(request.param)
-
-
-def drawn(folder: Path, name: str) -> XmlTree.Element:
-    return XmlTree.parse(folder / f"manual/{name}.svg").getroot()
 
 
 def area_mm2(root: XmlTree.Element, group: str) -> float:
@@ -80,8 +71,7 @@ def test_a_tilted_mould_lies_on_its_prop(folder: Path) -> None:
     for prop in design.props:
         mm2 = prop.plate.length_mm * prop.height_mm + prop.stop.length_mm * prop.stop_mm
         assert area_mm2(root, "clamp") == pytest.approx(mm2, rel=0.02)
-    words = {text.text for text in root.iter(f"{SVG}text")}
-    assert ("Prop" in words) == bool(design.props)
+    assert ("Prop" in words(root)) == bool(design.props)
 
 
 @pytest.mark.parametrize("name", ["lowered", "lifted", "clamped"])
@@ -114,9 +104,9 @@ def test_the_mould_from_above_names_its_stops_and_where_silicone_is(folder: Path
     )
     under = area_mm2(root, "silicone")
     assert plate.area - 1.2 * pads_mm2 - 30 < under < plate.area - 0.8 * pads_mm2
-    words = {text.text for text in root.iter(f"{SVG}text")}
-    assert {"Tip line", "Pad", "Gap", "Weir", "Trough", "Pour", "Plate", "Board"} <= words
-    assert ("Rail" in words) == bool(design.clamps)
+    named = words(root)
+    assert {"Tip line", "Pad", "Gap", "Weir", "Trough", "Pour", "Plate", "Board"} <= named
+    assert ("Rail" in named) == bool(design.clamps)
     (dashed,) = root.findall(f"{SVG}g[@id='dashed']/{SVG}path")
     assert dashed.attrib["d"].count("M") == 2
 

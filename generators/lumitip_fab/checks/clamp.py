@@ -6,7 +6,7 @@ Everything is measured in the frame of the mould's bed, for both fingers.
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ import numpy as np
 import shapely
 
 from lumitip_fab.checks.printed import (
+    as_moulds,
     circles,
     holes_at,
     measure_bed,
@@ -94,8 +95,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 def _prints(of: Subject, standing: Any, design: Design) -> Iterator[Measurement]:
     """One closed body that lies on the bed with its back, and its walls."""
     yield from measure_closed(of, standing)
-    printing = replace(design.printing, layer_mm=design.mould.layer_mm)
-    yield from measure_bed(of, standing, printing, 0.1, LEAST_BED_MM2)
+    yield from measure_bed(of, standing, as_moulds(design), 0.1, LEAST_BED_MM2)
     left = np.array(design.printing.bed_mm) - standing.extents
     yield of.figure("fits_bed", left.min(), 0, math.inf, note="room left")
     yield from walls("clamp.min_wall", of.subject, standing, design.printing.min_wall_mm, ())

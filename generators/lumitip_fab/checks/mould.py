@@ -14,7 +14,7 @@ from shapely.errors import GEOSException
 
 from lumitip_fab.checks.mould_grip import measure_grip
 from lumitip_fab.checks.mould_note import measure_note, measure_volume
-from lumitip_fab.checks.printed import measure_span
+from lumitip_fab.checks.printed import as_moulds, measure_span
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement, Subject, unreadable
 from lumitip_fab.checks.walls import Mask, beside, measure_relief, walls
@@ -83,7 +83,7 @@ def _measured(
     room = np.array(design.printing.bed_mm) - mesh.extents
     yield of.figure("fits_bed", room.min(), 0, math.inf, note="room left")
     yield of.near("fits_bed", mesh.bounds[0, 2], 0, 0.001, "height over the bed", at="foot")
-    yield measure_span(of, mesh, design.printing, design.mould.layer_mm)
+    yield measure_span(of, mesh, as_moulds(design))
     probe = Probe(mesh, design)
     yield _thickness(probe, file)
     yield _tip_thickness(probe, file)

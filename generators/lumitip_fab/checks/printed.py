@@ -120,15 +120,16 @@ def measure_bed(
     yield of.figure("bed_contact", solids.bed_contact_mm2(mesh), least, math.inf, "mm²")
 
 
-def measure_span(
-    of: Subject, mesh: Any, printing: Printing, layer_mm: float | None = None
-) -> Measurement:
-    """The longest line of a mesh on its bed that is laid over nothing, in the printer's layers or
-    in others."""
-    printing = replace(printing, layer_mm=layer_mm or printing.layer_mm)
+def measure_span(of: Subject, mesh: Any, printing: Printing) -> Measurement:
+    """The longest line of a mesh on its bed that is laid over nothing."""
     span, at_mm = longest_span_mm(mesh, printing)
     note = f"longest line over nothing, {at_mm:.1f} mm over the bed"
     return of.figure("span", span, 0.0, printing.bridge_mm, note=note)
+
+
+def as_moulds(design: Design) -> Printing:
+    """How moulds and what belongs to them are printed: in layers of their own."""
+    return replace(design.printing, layer_mm=design.mould.layer_mm)
 
 
 def apart_mm(found: Vectors, wanted: Vectors) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 
 from lumitip_fab.checks.mould import along, distances
-from lumitip_fab.checks.printed import RAY_MM, apart_mm, measure_span
+from lumitip_fab.checks.printed import RAY_MM, apart_mm, as_moulds, measure_span
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measure, Measurement, Subject, measured, unreadable
 from lumitip_fab.design import Design, Finger, Prop
@@ -106,7 +106,7 @@ def _prop(printed: Any, prop: Prop, design: Design) -> Iterator[Measurement]:
     of = Subject("wrap", prop.file)
     edges = solids.open_edges(printed) + abs(solids.bodies(printed) - 1)
     yield of.figure("prop", edges, 0, 0, "edges", "open, or bodies too many")
-    yield measure_span(of, printed, design.printing, design.mould.layer_mm)
+    yield measure_span(of, printed, as_moulds(design))
     off = np.array([_plate_mm(printed) - prop.height_mm, _top(printed) - 1.0])
     off[1] -= prop.height_mm + prop.stop_mm
     note = "of plate and stop from their heights"

@@ -24,7 +24,7 @@ FACING_DEG = 14.0  # elevation, to look between the boards
 APART_MM = 26.0  # of the boards, as they are drawn
 DROP_MM = 3.2  # across, as it is drawn
 _FACE_DOWN = frames.rotation_y(180.0)
-_LABEL_MM, _WORDS_MM = 8.0, 44.0
+_WORDS_MM = 44.0
 _AROUND = 48
 _WIRE_MM, _SAG_MM = 24.0, 3.0
 """How far wires are drawn beyond the board, and how far they hang down there."""
@@ -63,7 +63,7 @@ def facing_view(emitter: WiredBoard, receiver: WiredBoard) -> str:
         (("Receiver", "face up"), _right(eye, receiver.board)),
         (("Emitter", "face down, some 10 mm over it"), _right(eye, hung.board)),
     ]
-    _written(sheet, labels)
+    sheet.leaders_beside(labels, _WORDS_MM)
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": FACING_DEG})
 
 
@@ -98,12 +98,5 @@ def drop_view(layers: Mapping[str, Mesh], at: Point, stack: Stack) -> str:
     ring = DROP_MM / 2 * np.column_stack([np.cos(turn), np.sin(turn), 0 * turn])
     seen = eye.seen(ring + np.array([*at, stack.face_z_mm]))[:, :2]
     sheet.area([seen], "body", tints()["silicone"])
-    _written(sheet, [(("Drop", words), seen.mean(axis=0))])
+    sheet.leaders_beside([(("Drop", words), seen.mean(axis=0))], _WORDS_MM)
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
-
-
-def _written(sheet: Sheet, labels: list[tuple[tuple[str, str], Points]]) -> None:
-    """Labels on the right."""
-    right = float(sheet.high[0]) + _LABEL_MM
-    sheet.leaders(labels, right, "start")
-    sheet.cover(right + _WORDS_MM, float(labels[0][1][1]))

@@ -1,4 +1,4 @@
-"""What the live view must show: a card over the cells of a finger, and the picture of it."""
+"""A card over the cells of a finger, and the picture of it that the live view must show."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,8 @@ from lumitip_fab.scenes.finger_views import paint
 SCALE = 1.1
 ANGLE_DEG = 25.0
 """Of the card's edge."""
-LIGHT, DARK = (240, 229, 115), (3, 32, 77)
+_WAY = np.array([math.cos(math.radians(ANGLE_DEG)), math.sin(math.radians(ANGLE_DEG))])
+LIGHT, DARK = (240, 229, 115), (3, 32, 77)  # as in the live view
 _FRONT = View(np.eye(3)).enlarged(SCALE)
 _WORDS = 1.3
 _CARD, _EDGE_MM = "#f3ead2", 60.0
@@ -41,29 +42,22 @@ def card_view(finger: Finger, layers: Mapping[str, Mesh], holes_mm: Sequence[flo
         paint(sheet, _FRONT, seen)
         for cell, hole_mm in zip(cells, holes_mm, strict=True):
             sheet.area([SCALE * circle((cell[0], cell[1]), hole_mm / 2)], "part", "#fff")
-    low, high = sheet.low.copy(), sheet.high.copy()
-    middle = cells.mean(axis=0)
-    below = _below(middle)
-    low_mm, high_mm = low / SCALE, high / SCALE
-    held = shapely.box(low_mm[0] - _PAST_MM, cells[:, 1].min() - _PAST_MM, high_mm[0] + 2.0, 999.0)
-    card = shapely.Polygon(below) & held
+    left, right = float(sheet.low[0]), float(sheet.high[0])
+    middle, radius = cells.mean(axis=0), _room_mm(cells) / 2
+    card = _below(middle) & shapely.box(
+        left / SCALE - _PAST_MM, cells[:, 1].min() - _PAST_MM, right / SCALE + 2.0, 999.0
+    )
     with sheet.group("card"):
         sheet.area([SCALE * ring for ring in rings_of(card)], "body", _CARD)
-    right = float(high[0]) - SCALE * float(cells[:, 0].min()) + _BESIDE_MM
-    radius = _room_mm(cells) / 2
-    right += SCALE * radius
+    aside = np.array([right + _BESIDE_MM + SCALE * (radius - float(cells[:, 0].min())), 0.0])
     with sheet.group("picture"):
         for cell in cells:
             room = shapely.Polygon(cell + _SHARE * radius * _HEXAGON)
             free = 1.0 - (room & card).area / room.area
-            ring = SCALE * np.array(room.exterior.coords) + np.array([right, 0.0])
-            sheet.area([ring], "part", _colour(free))
-    along = SCALE * (np.array(below[:2]) - middle)
-    way = along[1] - along[0]
-    half = SCALE * (np.ptp(cells[:, 0]) / 2 + 2 * radius) / math.cos(math.radians(ANGLE_DEG))
-    ends = [side * half * way / np.linalg.norm(way) for side in (-1, 1)]
-    at = SCALE * middle + np.array([right, 0.0])
-    sheet.lines([np.array([at + end for end in ends])], "estimate")
+            sheet.area([SCALE * np.array(room.exterior.coords) + aside], "part", _colour(free))
+    half = SCALE * (np.ptp(cells[:, 0]) / 2 + 2 * radius) / _WAY[0]
+    at = SCALE * middle + aside
+    sheet.lines([np.array([at - half * _WAY, at + half * _WAY])], "estimate")
     foot = float(sheet.low[1]) - _NAME_MM
     for x, name in ((SCALE * middle[0], "The card, seen from the front"), (at[0], "The picture")):
         sheet.words(float(x), foot, name, "name", "middle")
@@ -71,15 +65,11 @@ def card_view(finger: Finger, layers: Mapping[str, Mesh], holes_mm: Sequence[flo
     return sheet.svg({"data-scale": SCALE, "data-angle-deg": ANGLE_DEG})
 
 
-def _below(middle: Points) -> list[Points]:
-    """Corners of what lies under a slanted line through a place, the line's ends first."""
-    turn = math.radians(ANGLE_DEG)
-    way, down = (
-        np.array([math.cos(turn), math.sin(turn)]),
-        np.array([math.sin(turn), -math.cos(turn)]),
-    )
-    left, right = middle - _EDGE_MM * way, middle + _EDGE_MM * way
-    return [left, right, right + 2 * _EDGE_MM * down, left + 2 * _EDGE_MM * down]
+def _below(middle: Points) -> shapely.Polygon:
+    """What lies under a slanted line through a place."""
+    ends = [middle - _EDGE_MM * _WAY, middle + _EDGE_MM * _WAY]
+    down = 2 * _EDGE_MM * np.array([_WAY[1], -_WAY[0]])
+    return shapely.Polygon([*ends, *(end + down for end in reversed(ends))])
 
 
 def _room_mm(cells: Points) -> float:

@@ -15,6 +15,8 @@ from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.scenes.depths import PIXEL_MM, counted, depths_mm, sides
 
 Points = NDArray[np.float64]
+Label = tuple[tuple[str, str], Points]
+"""Name and detail, and the place that they point at."""
 LINE_MM = 9.0  # from label to label
 
 _INK, _FAINT = "#1a1a1a", "#5a6b7a"
@@ -94,9 +96,7 @@ class Sheet:
             f'y="{0.0 - y_mm:.2f}" text-anchor="{anchor}">{escape(text)}</text>'
         )
 
-    def leaders(
-        self, labels: list[tuple[tuple[str, str], Points]], x_mm: float, anchor: str
-    ) -> None:
+    def leaders(self, labels: list[Label], x_mm: float, anchor: str) -> None:
         """A column of labels with a line from each to its place; labels keep apart.
 
         Args:
@@ -115,6 +115,18 @@ class Sheet:
             self.dot(float(at[0]), float(at[1]))
             self.words(x_mm + gap, y + 0.4 * scale, words[0], "name", anchor)
             self.words(x_mm + gap, y - 3.2 * scale, words[1], "detail", anchor)
+
+    def leaders_beside(self, labels: list[Label], words_mm: float, gap_mm: float = 8.0) -> None:
+        """Labels in a column on the right of what is drawn.
+
+        Args:
+            labels: as of `leaders`.
+            words_mm: room for the words.
+            gap_mm: from the drawing to the words.
+        """
+        right = float(self.high[0]) + gap_mm
+        self.leaders(labels, right, "start")
+        self.cover(right + words_mm, float(labels[0][1][1]))
 
     def cover(self, x_mm: float, y_mm: float) -> None:
         """Make the page reach a point."""

@@ -19,7 +19,7 @@ SCALE, PLAN_SCALE = 1.6, 2.0
 RAISED_MM = 22.0  # of the board over its place
 _BEHIND = np.diag([-1.0, 1.0, -1.0, 1.0])  # half a turn about y: the back up, the tip away
 _PLAN = View(np.eye(3)).enlarged(PLAN_SCALE)
-_LABEL_MM, _WORDS_MM = 8.0, 44.0
+_WORDS_MM = 44.0
 _PAST_MM = 22.0  # of the cable, beyond the mount face
 _ABREAST_MM = 0.5  # from wire to wire of a cable, as it is drawn
 _NUMBERS_SCALE = 1.25  # of the flaps: two drawings stand beside each other
@@ -75,10 +75,7 @@ def cable_view(
     labels = [(("Wires", "through the notch, under the block"), open_ways[0][0])]
     if mount.lugs:
         labels.append((("Lug", "tie the cable to it"), open_ways[0][_STEPS]))
-    right = float(sheet.high[0]) + _LABEL_MM
-    places = [(words, _page(eye, at)) for words, at in labels]
-    sheet.leaders(places, right, "start")
-    sheet.cover(right + _WORDS_MM, float(places[0][1][1]))
+    sheet.leaders_beside([(words, _page(eye, at)) for words, at in labels], _WORDS_MM)
     return sheet.svg(_ANGLES)
 
 

@@ -13,7 +13,7 @@ from lumitip_fab.scenes.finger_views import paint
 AZIMUTH_DEG, ELEVATION_DEG = 32.0, 38.0
 SCALE = 0.9
 RAISED_MM = 24.0  # of the card over its place
-_LABEL_MM, _WORDS_MM, _WORDS = 8.0, 60.0, 1.4
+_WORDS_MM, _WORDS = 60.0, 1.4
 
 
 def gauge_view(card: GaugeCard, outline: Outline, printed: Mesh, layers: Mapping[str, Mesh]) -> str:
@@ -45,9 +45,7 @@ def gauge_view(card: GaugeCard, outline: Outline, printed: Mesh, layers: Mapping
         ),
         (("Rails", "beside the finger"), page(rail, low, -card.rail_mm / 2)),
     ]
-    right = float(sheet.high[0]) + _LABEL_MM
-    sheet.leaders(labels, right, "start")
-    sheet.cover(right + _WORDS_MM, float(labels[0][1][1]))
+    sheet.leaders_beside(labels, _WORDS_MM)
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from lumitip_fab.design import Holder
+from lumitip_fab.design.tie_lug import TieLug
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.scenes.dimensions import circle
 from lumitip_fab.scenes.drawing import Points, Sheet, view
@@ -41,24 +42,21 @@ def holder_view(holder: Holder, printed: Mesh) -> str:
         (("Gripper", "dashed: its edges"), rings[1][int(rings[1][:, 0].argmax())]),
         (("Loop", "two ties, pulled tight"), lower[lower[:, 0].argmax()]),
     ]
-    right = float(sheet.high[0]) + _LABEL_MM
-    sheet.leaders(labels, right, "start")
+    sheet.leaders_beside(labels, _WORDS_MM)
     upper = max(loops, key=lambda points: float(points[:, 1].max()))
     left = float(sheet.low[0]) - _LABEL_MM
     sheet.leaders([(("Lug", "a tie goes through"), upper[upper[:, 0].argmin()])], left, "end")
     sheet.cover(left - _WORDS_MM, float(labels[0][1][1]))
-    sheet.cover(right + _WORDS_MM, float(labels[0][1][1]))
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
 
 
 def _loops(holder: Holder) -> list[Points]:
     """The way of each loop: through a lug and behind the gripper to that of the other arm, and back
     outside both; `(n, 3)` on the bed."""
-    return [_loop(holder, number) for number, lug in enumerate(holder.arm_lugs) if lug.side < 0]
+    return [_loop(lug) for lug in holder.arm_lugs if lug.side < 0]
 
 
-def _loop(holder: Holder, number: int) -> Points:
-    lug = holder.arm_lugs[number]
+def _loop(lug: TieLug) -> Points:
     first, last = lug.along_mm
     z = (lug.opening.y_min_mm + lug.opening.y_max_mm) / 2
     inner = lug.face_mm + (lug.opening.x_min_mm + lug.opening.x_max_mm) / 2

@@ -1,11 +1,9 @@
 """The wires as they are cut: how their ends are stripped, and each cable in its colours."""
 
-import numpy as np
-
 from lumitip_fab.design import Cable, Cabling
 from lumitip_fab.design.cabling import STRIP_MM
 from lumitip_fab.scenes.casting_page import inks
-from lumitip_fab.scenes.dimensions import dimension_rows, line
+from lumitip_fab.scenes.dimensions import dimension_rows, line, rectangle
 from lumitip_fab.scenes.drawing import Sheet
 
 WIDTH_MM = 120.0
@@ -36,9 +34,9 @@ def _stripped(sheet: Sheet) -> None:
     bare, middle = _END_SCALE * STRIP_MM, WIDTH_MM / 2
     for low, high in ((0.0, bare), (WIDTH_MM - bare, WIDTH_MM)):
         sheet.lines([line((low, y), (high, y)) for y in (-0.5, 0.0, 0.5)], "line")
-        sheet.area([_box(low, high, 0.7)], "part", _COPPER)
+        sheet.area([rectangle((low, high), (-0.7, 0.7))], "part", _COPPER)
     for low, high in ((bare, middle - _BREAK_MM), (middle + _BREAK_MM, WIDTH_MM - bare)):
-        sheet.area([_box(low, high, 1.5)], "body", _INSULATION)
+        sheet.area([rectangle((low, high), (-1.5, 1.5))], "body", _INSULATION)
     sheet.lines([line((middle - _BREAK_MM, 0.0), (middle + _BREAK_MM, 0.0))], "axis")
     ends = [(f"{STRIP_MM:g} mm", (low, 0.7), (low + bare, 0.7)) for low in (0.0, WIDTH_MM - bare)]
     for end in ends:
@@ -64,7 +62,3 @@ def _cable(sheet: Sheet, cable: Cable, scale: float, top: float) -> float:
     where = f"{cable.start.board} to {cable.end.board}"
     sheet.words(right, middle - 4.2, where, "detail", "start")
     return min(low - _ROW_MM, middle - _LEAST_MM)
-
-
-def _box(low: float, high: float, half: float) -> np.ndarray:
-    return np.array([(low, -half), (high, -half), (high, half), (low, half)])

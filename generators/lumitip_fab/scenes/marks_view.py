@@ -6,8 +6,8 @@ import numpy as np
 
 from lumitip_fab.design import Packages
 from lumitip_fab.design.packages import Marked
-from lumitip_fab.parts.surface import Mesh
-from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, view, visible_lines
+from lumitip_fab.scenes.drawing import Label, Points, Sheet, View, silhouette, view, visible_lines
+from lumitip_fab.scenes.system import block
 
 AZIMUTH_DEG, ELEVATION_DEG = -24.0, 34.0
 SCALE = 13.0
@@ -16,10 +16,9 @@ MARK = "#1f9d48"
 _APART_MM = 44.0  # from part to part on the page
 _PROBE_MM, _TIP_MM = 19.0, 4.5  # of a probe on the page: its length, its width at the far end
 _MARK_SHARE = 0.18  # of a body's length, as it is drawn
-_LABEL_MM, _WORDS_MM = 10.0, 62.0
+_GAP_MM, _WORDS_MM = 10.0, 62.0
 _SHOWN = dict.fromkeys(("anode", "cathode"), "this way round the meter shows a voltage")
 _SHOWN |= dict.fromkeys(("collector", "emitter"), "this way round light lowers the resistance")
-Label = tuple[tuple[str, str], Points]
 
 
 def marks_view(packages: Packages) -> str:
@@ -32,15 +31,14 @@ def marks_view(packages: Packages) -> str:
         with sheet.group(kind):
             _draw(sheet, eye, part, down)
         labels += list(_labels(eye, f"{kind} {names[kind]}", part, down))
-    right = float(sheet.high[0]) + _LABEL_MM
-    sheet.leaders(labels, right, "start")
-    sheet.cover(right + _WORDS_MM, float(labels[0][1][1]))
+    sheet.leaders_beside(labels, _WORDS_MM, _GAP_MM)
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
 
 
 def _draw(sheet: Sheet, eye: View, part: Marked, down: Points) -> None:
     """Body, mark and probes."""
-    body = _body(part)
+    long, wide, high = part.body_mm
+    body = block((-long / 2, long / 2), (-wide / 2, wide / 2), 0.0, 0.0, high)
     for at, colour in zip(_ends(eye, part, down), _probes(part), strict=True):
         out = np.sign(at[0] - down[0])
         far = at + _PROBE_MM * np.array([out * 0.8, 0.6])
@@ -48,25 +46,10 @@ def _draw(sheet: Sheet, eye: View, part: Marked, down: Points) -> None:
         sheet.area([np.array([at, far + across, far - across])], "body", PROBES[colour])
     sheet.area([ring + down for ring in silhouette(body, eye)], "body", "#f3f4f5")
     sheet.lines([line + down for line in visible_lines([body], eye)[0]], "line")
-    long, wide, high = part.body_mm
     inner = (_MARK_SHARE - 0.5) * long
     top = [(-long / 2, -wide / 2), (inner, -wide / 2), (inner, wide / 2), (-long / 2, wide / 2)]
     mark = np.array([(x, y, high) for x, y in top])
     sheet.area([eye.seen(mark)[:, :2] + down], "part", MARK)
-
-
-def _body(part: Marked) -> Mesh:
-    """The part's body on z = 0, its marked end at the lowest x."""
-    long, wide, high = part.body_mm
-    corners = [(x, y, z) for z in (0.0, high) for x, y in _rectangle(long / 2, wide / 2)]
-    sides = [(k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4) for k in range(4)]
-    faces = [(3, 2, 1, 0), (4, 5, 6, 7), *sides]
-    triangles = [t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))]
-    return Mesh(np.array(corners), np.array(triangles, dtype=np.int64))
-
-
-def _rectangle(x: float, y: float) -> tuple[tuple[float, float], ...]:
-    return (-x, -y), (x, -y), (x, y), (-x, y)
 
 
 def _ends(eye: View, part: Marked, down: Points) -> tuple[Points, Points]:

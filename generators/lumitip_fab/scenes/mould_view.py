@@ -9,7 +9,7 @@ from lumitip_fab.design import Board, Box, Clamp, Mould, Outline, Point
 from lumitip_fab.design.making import TIP_LAND_FRACTION
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.scenes.cut import rings_of
-from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, visible_lines
+from lumitip_fab.scenes.drawing import Label, Points, Sheet, View, silhouette, visible_lines
 from lumitip_fab.scenes.glb import tints
 
 SCALE = 1.3
@@ -19,7 +19,6 @@ _IN_MM = 6.0  # from the tip's corner to where the silicone is poured
 _RING_MM, _RING_STEPS = 1.6, 24
 _TIP_LINE_MM = 1.0  # of the stop at the tip within the outline, at most
 _WEIR_MM, _TROUGH_MM = 1.0, 5.0  # from the edge beside to where a label points at
-Label = tuple[tuple[str, str], Points]
 
 
 def mould_view(

@@ -9,7 +9,7 @@ from lumitip_fab.scenes.glb import tints
 
 AZIMUTH_DEG, ELEVATION_DEG = -8.0, 46.0
 SCALE = 1.5
-_LABEL_MM, _WORDS_MM = 8.0, 50.0
+_WORDS_MM = 50.0
 _IN_MM = 4.0  # from a corner's side to where a label points at
 _VALUE_DOWN_MM = 7.0  # of a value below its coupon's front edge
 
@@ -42,9 +42,7 @@ def plate_view(printed: Mesh, plate: FitPlate) -> str:
     for corner in plate.corners:
         face = corner.x_max_mm + x_mm - _IN_MM, corner.origin_mm[1], corner.height_mm / 2
         labels.append((("Corner", "a board goes in here, its tip up"), _at(eye, *face)))
-    right = float(sheet.high[0]) + _LABEL_MM
-    sheet.leaders(labels, right, "start")
-    sheet.cover(right + _WORDS_MM, float(labels[0][1][1]))
+    sheet.leaders_beside(labels, _WORDS_MM)
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
 
 

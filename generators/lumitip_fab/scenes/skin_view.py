@@ -14,7 +14,7 @@ from lumitip_fab.scenes.finger_views import paint
 SCALE = 1.5
 _FRONT = View(np.eye(3)).enlarged(SCALE)
 _IN_MM = 1.5  # from the side of the notch to where a label points at
-_LABEL_MM, _WORDS_MM = 8.0, 50.0
+_WORDS_MM = 50.0
 
 
 def skin_view(finger: Finger, board: Board, keys: Sequence[Key], layers: Mapping[str, Mesh]) -> str:
@@ -46,9 +46,7 @@ def skin_view(finger: Finger, board: Board, keys: Sequence[Key], layers: Mapping
         last = max(keys, key=lambda key: (key.at[0], key.at[1]))
         place = np.array(_page(*last.at))
         labels.append((("Plugs", "pushed out to the back"), place))
-    right = float(sheet.high[0]) + _LABEL_MM
-    sheet.leaders(labels, right, "start")
-    sheet.cover(right + _WORDS_MM, float(labels[0][1][1]))
+    sheet.leaders_beside(labels, _WORDS_MM)
     return sheet.svg({"data-scale": SCALE})
 
 
