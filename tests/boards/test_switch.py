@@ -53,7 +53,7 @@ def pull_down_lost(text: str) -> str:
 
 
 def gate_at_another_wire(text: str) -> str:
-    return swapped_pads(text, "J1", "2", "3")
+    return swapped_pads(text, "J1", "1", "3")
 
 
 DAMAGES: dict[Damage, set[str]] = {
