@@ -14,6 +14,7 @@ from lumitip_fab.text import as_written, passage
 PROUD_MM = 0.05
 """So much thicker than its pocket is deep a board may be."""
 _PROBE_V = 0.15  # less than at the working current: a diode test drives about 1 mA
+LIT_V = 0.3  # at most, of a phototransistor in strong light at that current
 
 
 def ordering(design: Design, files: Files) -> str:
@@ -153,7 +154,7 @@ def polarity_test(packages: Packages, fingers: tuple[Finger, ...]) -> str:
         tests.append(_text("led", part=led, name=name, probed_v=probed_v))
     if not detector.mark_is_known:
         name = as_written(packages.photodetector_name)
-        tests.append(_text("photodetector", part=detector, name=name))
+        tests.append(_text("photodetector", part=detector, name=name, lit_v=LIT_V))
     parts = Counter(part.kind for finger in fingers for part in finger.parts)
     counted = f"{parts['led']} LEDs, {parts['photodetector']} photodetectors"
     tests_text = "".join(tests)

@@ -18,7 +18,7 @@ _PROBE_MM, _TIP_MM = 19.0, 4.5  # of a probe on the page: its length, its width 
 _MARK_SHARE = 0.18  # of a body's length, as it is drawn
 _GAP_MM, _WORDS_MM = 10.0, 62.0
 _SHOWN = dict.fromkeys(("anode", "cathode"), "this way round the meter shows a voltage")
-_SHOWN |= dict.fromkeys(("collector", "emitter"), "this way round light lowers the resistance")
+_SHOWN |= dict.fromkeys(("collector", "emitter"), "this way round light gives a voltage")
 
 
 def marks_view(packages: Packages) -> str:
