@@ -102,6 +102,10 @@ class Layout:
             array.flags.writeable = False
             object.__setattr__(self, name, array)
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.__post_init__()  # a copy or a pickled array can be written to
+
     def __len__(self) -> int:
         return int(self.x_mm.size)
 

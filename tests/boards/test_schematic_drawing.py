@@ -185,18 +185,19 @@ def test_pins_have_their_types(drawn: Drawn) -> None:
 @pytest.mark.slow_cases
 @pytest.mark.parametrize("board", AUXILIARY, ids="-".join)
 def test_what_is_ordered_has_its_numbers(drawn: Drawn, board: tuple[str, str]) -> None:
-    """And the address of its data sheet, where the catalogue has it."""
+    """And the address of its data sheet, or of a page that leads to it."""
     _, placed, sheet = drawn(board)
     parts = {part.ref: part for part in placed.components if part.nets}
     for symbol in children(read_nodes(sheet), "symbol"):
         fields = _properties(symbol)
         part = parts.get(fields["Reference"])
-        assert fields["Datasheet"] == (part.datasheet if part else "")
+        assert fields["Datasheet"] == (part.data_page if part else "")
         if part is None or not part.part:
             assert fields.keys().isdisjoint({"MPN", "Manufacturer", "LCSC"})
         else:
             assert (fields["MPN"], fields["Manufacturer"]) == (part.part, part.manufacturer)
             assert fields.get("LCSC", "") == part.lcsc
+            assert not part.lcsc or part.lcsc in fields["Datasheet"] or part.datasheet
     if board in (("published", "flange"), ("../fingertip", "flange")):
         assert any(part.kind == "regulator" and part.datasheet for part in parts.values())
 

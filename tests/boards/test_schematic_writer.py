@@ -146,7 +146,7 @@ def _all_is_there(written: Written) -> None:
         part = parts.get(fields["Reference"])
         footprint = f"lumitip:{part.footprint.name}" if part else ""
         assert fields["Footprint"] == footprint
-        assert fields["Datasheet"] == (part.datasheet if part else "")
+        assert fields["Datasheet"] == (part.data_page if part else "")
         ordered = (part.manufacturer, part.part) if part and part.part else (None, None)
         assert (fields.get("Manufacturer"), fields.get("MPN")) == ordered
         numbered = part.lcsc if part and part.part and part.lcsc else None

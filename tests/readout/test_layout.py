@@ -1,7 +1,9 @@
 """`layout.json`: the published figures, its canonical form and its hash."""
 
+import copy
 import dataclasses
 import json
+import pickle
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -135,6 +137,20 @@ def test_arrays_are_copies_that_cannot_be_written(layout: Layout) -> None:
             getattr(mine, name)[0] = 0
         with pytest.raises(dataclasses.FrozenInstanceError):
             setattr(mine, name, given)
+
+
+@pytest.mark.parametrize(
+    "copied", [copy.copy, copy.deepcopy, lambda v: pickle.loads(pickle.dumps(v))]
+)
+def test_the_arrays_of_a_copy_cannot_be_written_either(
+    copied: Callable[[Layout], Layout], layout: Layout
+) -> None:
+    mine = copied(layout)
+    assert mine == layout
+    assert mine.cells == layout.cells
+    for name in ("x_mm", "neighbours", "adc_pin", "hole_share"):
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(mine, name)[0] = 0
 
 
 def test_cells_are_the_arrays_as_records_of_plain_values(layout: Layout) -> None:

@@ -122,6 +122,12 @@ class Component:
     """Whether it is soldered on by hand after the PCB fab has mounted the rest."""
 
     @property
+    def data_page(self) -> str:
+        """Address of its data sheet, or of the distributor's page that leads to it."""
+        shop = f"https://www.lcsc.com/product-detail/{self.lcsc}.html" if self.lcsc else ""
+        return self.datasheet or shop
+
+    @property
     def assembled(self) -> bool:
         """Whether a PCB fab mounts it: no bare copper, and not soldered on by hand."""
         return bool(self.part) and not self.hand_soldered

@@ -120,7 +120,7 @@ def _field_texts(drawn: Drawn, part: Component | None) -> dict[str, tuple[str, P
         "Reference": (drawn.ref, drawn.ref_at),
         "Value": (drawn.value, drawn.value_at),
         "Footprint": (footprint, None),
-        "Datasheet": (part.datasheet if part else "", None),
+        "Datasheet": (part.data_page if part else "", None),
     }
     if part and part.part:
         texts |= {"Manufacturer": (part.manufacturer, None), "MPN": (part.part, None)}
