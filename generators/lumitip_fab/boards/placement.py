@@ -35,6 +35,7 @@ from lumitip_fab.design import (
     Rules,
     Side,
 )
+from lumitip_fab.design.board_rules import rules_of
 from lumitip_fab.design.pull_ups import used_slots
 from lumitip_fab.errors import BuildError
 
@@ -64,7 +65,7 @@ def place(design: Design, board: Finger | AuxiliaryBoard) -> Placement:
 
 def _printed(design: Design, board: AuxiliaryBoard, cells: Cells | None = None) -> Placement:
     """A board whose parts are in their places, with outlines and legend."""
-    rules, title, stack = design.rules, design.title, design.stack
+    rules, title, stack = rules_of(design, board.name), design.title, design.stack
     outlined = [with_outline(part, rules, cells) for part in board.components]
     spots.refuse_misplaced(board.name, outlined, inside=board.box if cells else None)
     bare = Placement(

@@ -12,6 +12,7 @@ from shapely.geometry.base import BaseGeometry
 from lumitip_fab.checks.board_read import ReadBoard, lands, on_page
 from lumitip_fab.checks.readers.kicad_board import Copper, Terminal
 from lumitip_fab.checks.result import Measurement
+from lumitip_fab.design.board_rules import rules_of
 
 HOT_LOOP_MM2 = 6.0
 """A loop of about 5 mm² is what a TSOT26 with an 0603 beside it can have."""
@@ -28,7 +29,7 @@ _RULED_MM = 0.001  # that a rule's area may be short of the design's
 
 def measure_copper(read: ReadBoard) -> Iterator[Measurement]:
     """Gaps, widths and rings against the rules of the design."""
-    rules = read.design.rules
+    rules = rules_of(read.design, read.name)
     yield _gap(read, rules.copper_gap_mm)
     yield _edge_gap(read, rules.edge_gap_mm)
     if read.holes:
@@ -85,7 +86,7 @@ def measure_supplies(read: ReadBoard) -> Iterator[Measurement]:
         return
     wide = {net for net in read.auxiliary.supplies if net != "GND"}
     widths = [c.width_mm for c in read.board.loose if c.kind == "track" and c.net in wide]
-    least = read.design.rules.supply_track_mm
+    least = rules_of(read.design, read.name).supply_track_mm
     yield read.figure("supply_width", min(widths, default=math.nan), least, math.inf)
 
 

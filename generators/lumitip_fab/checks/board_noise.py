@@ -8,6 +8,7 @@ import shapely
 from lumitip_fab.checks.board_read import ReadBoard, lands, on_page
 from lumitip_fab.checks.readers.kicad_board import Copper
 from lumitip_fab.checks.result import Measurement
+from lumitip_fab.design.board_rules import rules_of
 
 VIA_MM = 1.0  # from the edge of a capacitor's ground pad to the middle of a via, at most
 CRYSTAL_MM = 2.0
@@ -35,7 +36,8 @@ def measure_bypass_vias(read: ReadBoard) -> Iterator[Measurement]:
 
 def _has_room(read: ReadBoard, pad: Copper) -> bool:
     """Whether a via of ground could be near a pad: clear of other nets, pads, holes and edge."""
-    rules, half = read.design.rules, read.design.rules.via_mm / 2
+    rules = rules_of(read.design, read.name)
+    half = rules.via_mm / 2
     pads = {id(c) for layer in read.board.layers for *_, c in lands(read.board, layer)}
     taken = [
         copper.area.buffer(half + rules.copper_gap_mm)

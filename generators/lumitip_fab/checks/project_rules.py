@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from lumitip_fab.design import Design, Rules
+from lumitip_fab.design.board_rules import rules_of
 from lumitip_fab.design.panel import in_copy
 
 _LEAST_SPOKES = 2
@@ -40,8 +41,9 @@ def other_rules(folder: Path, design: Design) -> Iterator[str]:
     are no errors or are left out."""
     record = json.loads((folder / f"{folder.name}.kicad_pro").read_text(encoding="utf-8"))
     settings, nets = record["board"]["design_settings"], record["net_settings"]
-    yield from _unlike("", settings["rules"], _wanted(design.rules))
-    yield from sorted(settings["rules"].keys() - _wanted(design.rules))
+    rules = rules_of(design, folder.name)
+    yield from _unlike("", settings["rules"], _wanted(rules))
+    yield from sorted(settings["rules"].keys() - _wanted(rules))
     classes = {each["name"]: each for each in nets["classes"]}
     supplies = _supplies(folder.name, design)
     patterns = nets["netclass_patterns"]
@@ -51,7 +53,7 @@ def other_rules(folder: Path, design: Design) -> Iterator[str]:
     of_net = {entry["pattern"]: entry["netclass"] for entry in patterns}
     wide = {of_net.get(net, "") for net in supplies}
     for name, each in classes.items():
-        yield from _unlike(f"{name} ", each, _wanted_of_class(design.rules, name in wide))
+        yield from _unlike(f"{name} ", each, _wanted_of_class(rules, name in wide))
         yield from (f"{name} {more}" for more in sorted(each.keys() - _OF_A_CLASS))
     yield from (f"{net} in no class" for net in sorted(supplies) if of_net.get(net) not in classes)
     yield from _allowed(record, settings)

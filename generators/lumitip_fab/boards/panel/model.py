@@ -26,6 +26,7 @@ from lumitip_fab.boards.placed import placed
 from lumitip_fab.boards.silk.strokes import angle_on_board_deg
 from lumitip_fab.boards.verify import require_clean_drc
 from lumitip_fab.design import Design, Panel, Point, Rules, Side
+from lumitip_fab.design.board_rules import rules_of
 from lumitip_fab.design.panel import in_copy
 from lumitip_fab.pipeline.artefact import Artefact
 
@@ -163,7 +164,7 @@ def panel_files(design: Design, panel: Panel, board: BoardModel) -> tuple[Artefa
     Raises:
         BuildError: if a tab has no room, or the panel's copper breaks its rules.
     """
-    model = require_clean_drc(panel_model(panel, board, design.rules))
+    model = require_clean_drc(panel_model(panel, board, rules_of(design, panel.name)))
     placement, layers = model.placement, layers_of(model)
     notes = {
         **stop_note(placement),

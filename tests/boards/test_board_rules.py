@@ -1,0 +1,50 @@
+"""Finer copper than common is for the fingers' boards alone."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from lumitip_fab.boards.placement import place
+from lumitip_fab.design import Design
+from lumitip_fab.design.board_rules import COMMON_MM, rules_of
+
+pytestmark = pytest.mark.slow
+Designs = Callable[[str], Design]
+
+
+def test_a_fine_design_has_common_rules_outside_its_fingers(designs: Designs) -> None:
+    dense = designs("dense")
+    assert dense.rules.via_drill_mm < COMMON_MM["via_drill_mm"]
+    for finger in dense.fingers:
+        assert rules_of(dense, finger.name) == dense.rules
+    outside = [board.name for board in dense.auxiliary_boards]
+    assert outside == ["breakout", "flange"]
+    for name in outside:
+        rules = rules_of(dense, name)
+        assert {of: getattr(rules, of) for of in COMMON_MM} == COMMON_MM
+        assert rules == replace(dense.rules, **COMMON_MM)
+
+
+def test_boards_are_placed_and_routed_by_them(designs: Designs) -> None:
+    dense = designs("dense")
+    for board in dense.auxiliary_boards:
+        for kind in place(dense, board).classes:
+            assert kind.via_drill_mm == COMMON_MM["via_drill_mm"]
+            assert kind.clearance_mm == COMMON_MM["copper_gap_mm"]
+
+
+def test_coarser_rules_of_a_file_hold_on_every_board(designs: Designs) -> None:
+    usual = designs("small")
+    coarse = replace(usual, rules=replace(usual.rules, track_mm=0.3, via_mm=0.8))
+    rules = rules_of(coarse, "breakout")
+    assert (rules.track_mm, rules.via_mm) == (0.3, 0.8)
+
+
+def test_a_panel_has_the_rules_of_its_board(designs: Designs) -> None:
+    panelled = designs("panelled")
+    fine = replace(panelled, rules=replace(panelled.rules, via_drill_mm=0.2))
+    drills = {panel.board: rules_of(fine, panel.name).via_drill_mm for panel in fine.panels}
+    assert len(drills) >= 2
+    fingers = {finger.name for finger in fine.fingers}
+    assert drills == {name: 0.2 if name in fingers else 0.3 for name in drills}
