@@ -12,6 +12,7 @@ import shapely
 
 from lumitip_fab.checks.readers.gerber import gerber_area
 from lumitip_fab.checks.readers.kicad_board import read_board
+from lumitip_fab.design.board_rules import rules_of
 from lumitip_fab.design.encoding import read_design
 from programs import needs
 
@@ -115,7 +116,7 @@ def test_kicad_finds_no_error_by_its_default_rules(
     )
     report_of = json.loads(report.read_text())
     assert report_of["unconnected_items"] == []
-    rules = read_design(boards(preset) / "design.json").rules
+    rules = rules_of(read_design(boards(preset) / "design.json"), name)
     for violation in report_of["violations"]:
         assert violation["type"] in FINER, violation
         found = re.search(r"([\d.]+) mm; actual ([\d.]+) mm", violation["description"])
