@@ -32,17 +32,26 @@ def dimension_rows(
     axis = 1 if upright else 0
     ordered = sorted(spans, key=lambda span: abs(span[1][axis] - span[2][axis]))
     rows = [first_mm + outward * STEP_MM * row for row in range(len(ordered))]
+    crossing = [
+        sorted(end[axis] for _, *ends in ordered[row + 1 :] for end in ends)
+        for row in range(len(ordered))
+    ]
     names = [
-        _draw(sheet, span, row, outward, upright) for span, row in zip(ordered, rows, strict=True)
+        _draw(sheet, span, row, outward, upright, lines)
+        for span, row, lines in zip(ordered, rows, crossing, strict=True)
     ]
     for name, place, anchor in names:  # over the lines of all
         write(sheet, place, name, anchor, upright)
 
 
 def _draw(
-    sheet: Sheet, span: Span, row_mm: float, outward: int, upright: bool
+    sheet: Sheet, span: Span, row_mm: float, outward: int, upright: bool, crossing: list[float]
 ) -> tuple[str, Point, str]:
-    """Draw the lines of a dimension; returns its name with place and anchor."""
+    """Draw the lines of a dimension; returns its name with place and anchor.
+
+    Beside it, the name begins beyond lines of longer dimensions that would cross it, which are
+    sorted, and the dimension's line is drawn on to it.
+    """
     axis = 1 if upright else 0
 
     def point(along: float, across: float) -> Point:
@@ -57,15 +66,19 @@ def _draw(
     low, high = sorted(end[axis] for end in ends)
     inside = high - low >= 3 * _ARROW_MM
     reach = 0.0 if inside else 2 * _ARROW_MM
-    sheet.lines([np.array([point(low - reach, row_mm), point(high + reach, row_mm)])], "leader")
     for along, turn in ((low, 1.0), (high, -1.0)):
         foot = along + (turn if inside else -turn) * _ARROW_MM
         arrow = [point(along, row_mm), point(foot, row_mm + 0.45), point(foot, row_mm - 0.45)]
         sheet.area([np.array(arrow)], "part", _INK)
-    if LETTER_MM * len(name) + 2 * _GAP_MM <= high - low:
+    wide, line_end = LETTER_MM * len(name), high + reach
+    if wide + 2 * _GAP_MM <= high - low:
         place, anchor, lift = (low + high) / 2, "middle", 1.3
     else:
-        place, anchor, lift = high + reach + _GAP_MM, "start", -1.1
+        for across in crossing:
+            if line_end < across < line_end + 2 * _GAP_MM + wide:
+                line_end = across + _GAP_MM
+        place, anchor, lift = line_end + _GAP_MM, "start", -1.1
+    sheet.lines([np.array([point(low - reach, row_mm), point(line_end, row_mm)])], "leader")
     return name, point(place, row_mm - lift if upright else row_mm + lift), anchor
 
 
