@@ -34,7 +34,8 @@ def noted_mould(design: Design, finger: Finger) -> list[Artefact]:
 def written_masks(config: Input, out: Path) -> Path:
     """Write the masks of a design by every route, and what their checks read, into a folder."""
     design = derive(config)
-    (out / "mask").mkdir(parents=True)
+    for folder in ("mask", "manual"):
+        (out / folder).mkdir(parents=True)
     (out / "design.json").write_text(design_text(design), encoding="utf-8")
     for finger in design.fingers:
         for artefact in (*noted_mask(design, finger), *sheet_files(design, finger)):

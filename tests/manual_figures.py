@@ -132,7 +132,7 @@ def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
     names = [finger.name for finger in design.fingers]
     boards = [*names, *(auxiliary.name for auxiliary in design.auxiliary_boards)]
     wanted = {"assembly/receiver_exploded.svg", "assembly/system.svg", "wiring/wiring.svg"}
-    wanted |= {f"mask/{name}_mask.svg" for name in names}
+    wanted |= {f"manual/{name}_mask.svg" for name in names}
     bench = ("measured", "lengths", "plate", "facing", "board", "mould", "drop")
     work = (*bench, "cable", "filled", "lowered", "clamped", "lifted", "card", "skin")
     if design.packages.unmarked:

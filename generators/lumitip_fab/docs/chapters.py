@@ -141,9 +141,10 @@ def _filaments(design: Design) -> str:
 
 def _masked(design: Design, files: Files) -> Iterator[str]:
     """The steps of the mask; the first shows both masks."""
-    shown = "as it is printed" if design.mask.route == "film" else "outline, holes and folds"
+    printed = "as it is printed, but without words"
+    shown = printed if design.mask.route == "film" else "outline, holes and folds"
     pictures = "\n".join(
-        f"![The {f.name} mask, {shown}](mask/{f.name}_mask.svg)" for f in design.fingers
+        f"![The {f.name} mask, {shown}](manual/{f.name}_mask.svg)" for f in design.fingers
     )
     first, *others = wrapping_steps(design, mask_facts(files, design.emitter), "NAME")
     both = _text("masks", pictures=pictures)

@@ -19,12 +19,12 @@ from xml.sax.saxutils import escape
 from lumitip_fab.design import Cable, Cabling, Terminal, Title, Wire
 from lumitip_fab.design.cabling import COLOURS, codes_of
 
-_ROW, _HEAD, _FOOT, _GAP, _TOP = 7.0, 17.0, 3.0, 12.0, 24.0
-_MARGIN, _LABEL = 8.0, 40.0
+_ROW, _HEAD, _FOOT, _GAP, _TOP = 6.2, 15.5, 3.0, 8.0, 20.0
+_MARGIN, _LABEL = 8.0, 44.0
 _LEFT = (8.0, 44.0)  # edges of the boxes in each column; near, for the manual's page shrinks all
-_MIDDLE = (110.0, 162.0)
-_RIGHT = (228.0, 268.0)
-_SMALL = 4.2  # height of the least letters
+_MIDDLE = (114.0, 168.0)
+_RIGHT = (238.0, 278.0)
+_SMALL = 4.6  # height of the least letters
 _INK, _FAINT, _PAPER = "#1a1a1a", "#5a6b7a", "#f4f6f8"
 _BOLD = 'text-anchor="middle" font-weight="bold"'
 _CENTRED = 'text-anchor="middle"'
@@ -53,7 +53,7 @@ def diagram(title: Title, cabling: Cabling) -> str:
     runs = tuple(_runs(cabling))
     bottom = max(run.top + _height(run.cable) for run in runs)
     width = max(right for _, right in (_edges(run)[1] for run in runs)) + _MARGIN
-    height = bottom + 13 + _MARGIN
+    height = bottom + 13 + _MARGIN / 2
     name, drawn = (f"{t.name} {t.revision}: wiring" for t in (title, title.on_pages()))
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm" '
@@ -64,7 +64,7 @@ def diagram(title: Title, cabling: Cabling) -> str:
         *_boxes(runs),
         *(line for run in runs for wire in run.cable.wires for line in _wire(run, wire)),
         *(line for run in runs for line in _ends(run)),
-        _text(_LEFT[0], bottom + 8, "Stranded copper, colours by IEC 60757.", _SMALL, _FAINT),
+        _text(_LEFT[0], bottom + 7, "Stranded copper, colours by IEC 60757.", _SMALL, _FAINT),
         _text(
             _LEFT[0],
             bottom + 12.5,
@@ -146,7 +146,7 @@ def _wire(run: Run, wire: Wire) -> Iterator[str]:
         f'fill="#fff" stroke="{_INK}" stroke-width=".2"/>'
     )
     words = f"{wire.number} {wire.colour}{current}"
-    yield _text(label + _LABEL / 2, start + 1.4, words, _SMALL, _INK, _CENTRED)
+    yield _text(label + _LABEL / 2, start + 1.6, words, _SMALL, _INK, _CENTRED)
     yield "</g>"
 
 
@@ -181,7 +181,9 @@ def _pad(pad: Terminal, x: float, y: float, side: int) -> str:
     """A pad on the edge of a box; its words run into the box, the number next to the edge."""
     words: Iterable[str] = dict.fromkeys((pad.pin, pad.name))
     lines = [
-        _text(x + side * (3 + 7 * i), y + 1.5, word, 4.2, _INK, f'text-anchor="{_anchor(side)}"')
+        _text(
+            x + side * (3 + 7.5 * i), y + 1.6, word, _SMALL, _INK, f'text-anchor="{_anchor(side)}"'
+        )
         for i, word in enumerate(words)
     ]
     ring = f'r="1.3" fill="#d9b44a" stroke="{_INK}" stroke-width=".3"'

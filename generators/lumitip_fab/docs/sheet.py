@@ -1,6 +1,7 @@
 """The manual as a PDF on A4 set by reportlab: the same text."""
 
 import io
+import math
 import re
 from collections.abc import Iterator
 from functools import partial
@@ -73,6 +74,8 @@ _LAYOUTS = (
 )
 """In the order in which they are tried, where one saves a page: near rows before drawings whose
 words would be small. A picture of pixels has no words to read."""
+_READABLE_PT = 6.0
+"""Height of the least words of a drawing, where there is room for it: no layout makes them less."""
 _DPI = 200
 _TRUE_SIZE = re.compile(rb'^<svg [^>]*data-scale="1"')
 """The beginning of a drawing that a print of its page is measured by."""
@@ -218,13 +221,14 @@ def _picture(path: str, files: Files, width: float, high: float, layout: _Layout
         drawing = svg2rlg(io.BytesIO(data))
         if drawing.width > _WIDE * WIDTH:
             high = max(high, _WIDE_HIGH)
-        smaller = 1.0 if _TRUE_SIZE.search(data) else layout.drawing
-        scale = smaller * min(1.0, width / drawing.width, high / drawing.height)
+        scale = min(1.0, width / drawing.width, high / drawing.height)
+        least = _letter(drawing)
+        if not _TRUE_SIZE.search(data):
+            scale = min(scale, max(layout.drawing * scale, _READABLE_PT / least))
         drawing.scale(scale, scale)
         drawing.width, drawing.height = drawing.width * scale, drawing.height * scale
         drawing.hAlign = "CENTER"
         drawing.initialFontName = PLAIN
-        _letter(drawing)
         return drawing
     seen = PIL.Image.open(io.BytesIO(files.read(path)))
     scale = layout.pixels * min(width / seen.width, high / seen.height)
@@ -239,14 +243,17 @@ def _picture(path: str, files: Files, width: float, high: float, layout: _Layout
     return Image(plain, wide, high)
 
 
-def _letter(group: Group) -> None:
-    """Set a drawing's words in the faces of this document."""
+def _letter(group: Group, scale: float = 1.0) -> float:
+    """Set a drawing's words in the faces of this document; returns the height of the least."""
+    least = math.inf
     for node in group.contents:
         if isinstance(node, Group):
-            _letter(node)
+            least = min(least, _letter(node, scale * math.hypot(*node.transform[2:4])))
         elif isinstance(node, String):
             node.fontName, share = OF_HELVETICA[node.fontName]
             node.fontSize *= share
+            least = min(least, scale * node.fontSize)
+    return least
 
 
 def _table(rows: list[list[Paragraph]], style: TableStyle) -> Flowable:

@@ -20,13 +20,15 @@ from lumitip_fab.text import data_file
 MARGIN_MM = 6.0
 
 
-def svg_drawing(artwork: Artwork, mask: Mask, title: Title) -> bytes:
+def svg_drawing(artwork: Artwork, mask: Mask, title: Title, words: bool = True) -> bytes:
     """The bytes of the SVG.
 
     Args:
         artwork: what to draw.
         mask: for the registration marks, which give the sheet's size.
         title: of the design.
+        words: whether it has the finger's name and the numbers of the flaps, which cannot be read
+            where it is set smaller.
     """
     shift = _shift(mask)
     width, height = (f"{2 * shift[0]:g}", f"{_height(mask):g}")
@@ -35,8 +37,9 @@ def svg_drawing(artwork: Artwork, mask: Mask, title: Title) -> bytes:
     holes = (artwork.black, artwork.window, *artwork.apertures)
     labels = (
         _text(str(f.number), (f.label[0], f.label[1] - 0.6), shift, 1.8, 'text-anchor="middle"')
-        for f in artwork.flaps
+        for f in (artwork.flaps if words else ())
     )
+    name = _text(artwork.name, artwork.name_at, shift, artwork.name_mm, 'font-weight="bold"')
     drawing = data_file("mask/mask.svg").format(
         width=width,
         height=height,
@@ -47,7 +50,7 @@ def svg_drawing(artwork: Artwork, mask: Mask, title: Title) -> bytes:
         cut=_d((artwork.cut,), shift),
         folds=_d(folds, shift),
         registration="\n".join(_registration(p, shift) for p in mask.registration),
-        name=_text(artwork.name, artwork.name_at, shift, artwork.name_mm, 'font-weight="bold"'),
+        name=name * words,
         labels="".join(f"\n{label}" for label in labels),
     )
     return drawing.encode()

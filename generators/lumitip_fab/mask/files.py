@@ -33,7 +33,7 @@ def creasing_files(design: Design) -> tuple[Artefact, ...]:
 
 
 def mask_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
-    """The mask of a finger on paper, as a drawing, and to cut from an opaque film."""
+    """The mask of a finger on paper, as a drawing, to cut from a film, and for the manual."""
     mask, title = design.mask, design.title
     artwork = artwork_of(design, finger, mask)
     stem = f"mask/{finger.name}_mask"
@@ -54,6 +54,11 @@ def mask_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
         ),
         Artefact(f"{stem}.dxf", dxf_drawing(artwork, mask), dxf_to_sensor()),
         Artefact(f"mask/{finger.name}_cut.dxf", cut_drawing(artwork, mask), dxf_to_sensor()),
+        Artefact(
+            f"manual/{finger.name}_mask.svg",
+            svg_drawing(artwork, mask, title, words=False),
+            frame="",
+        ),
     )
 
 

@@ -19,6 +19,8 @@ SCALE = 1.4
 _ABOVE = view(AZIMUTH_DEG, ELEVATION_DEG).enlarged(SCALE)
 _BESIDE = SIDE.enlarged(SCALE)
 _GAP_MM = 10.0  # from the drawing above to the one below
+_PAGE_MM = 148.0  # width of a drawing up to which words have their usual size: the manual sets a
+# wider one smaller
 _ZOOM, _LENS_MM = 5.0, 15.0
 """Of the marks' detail: how much larger it is, and its radius on the page."""
 _CHORDS = 48
@@ -57,12 +59,13 @@ def clamped_view(
     level = float(sheet.low[1])
     sheet.lines([np.array([(sheet.low[0], level), (sheet.high[0], level)])], "leader")
     labels += _side_labels(cast, ways, lean, down)
-    right = float(sheet.high[0]) + LABEL_MM
+    sheet.words_scale = max(1.0, float(sheet.high[0] - sheet.low[0]) / _PAGE_MM)
+    right, words_mm = float(sheet.high[0]) + LABEL_MM, WORDS_MM * sheet.words_scale
     sheet.leaders(labels, right, "start")
-    sheet.cover(right + WORDS_MM, level)
+    sheet.cover(right + words_mm, level)
     if clamp is not None:
         at, nut = _mark_at(clamp, lean, down), _nut_label(clamp, lean)[1]
-        _enlarge(sheet, beside, at, np.array([right + WORDS_MM / 2, (nut[1] + at[1]) / 2]))
+        _enlarge(sheet, beside, at, np.array([right + words_mm / 2, (nut[1] + at[1]) / 2]))
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
 
 
@@ -110,8 +113,8 @@ def _enlarge(sheet: Sheet, drawn: _Drawn, at: Points, to: Points) -> None:
     join = np.array([at + way * _LENS_MM / _ZOOM, to - way * _LENS_MM])
     sheet.lines([*rings, join], "leader")
     x, y = float(to[0]), float(to[1]) - _LENS_MM
-    sheet.words(x, y - 4.5, "Marks", "name", "middle")
-    sheet.words(x, y - 8.1, "of leg and mould in one line", "detail", "middle")
+    sheet.words(x, y - 4.5 * sheet.words_scale, "Marks", "name", "middle")
+    sheet.words(x, y - 8.1 * sheet.words_scale, "of leg and mould in one line", "detail", "middle")
 
 
 def _within(lines: list[Points], area: shapely.Geometry) -> Iterator[Points]:

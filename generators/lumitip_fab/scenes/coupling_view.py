@@ -21,7 +21,7 @@ from lumitip_fab.scenes.dimensions import (
 )
 from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, visible_lines
 
-SCALE = 3.0
+SCALE = 2.8
 FROM_GRIPPER = View(np.array([[1.0, 0, 0], [0, -1, 0], [0, 0, -1]]))
 FROM_SIDE = View(np.array([[0.0, 0, 1], [0, -1, 0], [1, 0, 0]]))
 """Views of the mount frame (u, w, h), with w down the page."""

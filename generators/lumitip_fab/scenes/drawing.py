@@ -96,8 +96,9 @@ class Sheet:
             f'y="{0.0 - y_mm:.2f}" text-anchor="{anchor}">{escape(text)}</text>'
         )
 
-    def leaders(self, labels: list[Label], x_mm: float, anchor: str) -> None:
-        """A column of labels with a line from each to its place; labels keep apart.
+    def leaders(self, labels: list[Label], x_mm: float, anchor: str) -> float:
+        """A column of labels with a line from each to its place; labels keep apart. Returns the
+        height of the lowest label's lower edge.
 
         Args:
             labels: name and detail of each, and where it points at.
@@ -115,9 +116,11 @@ class Sheet:
             self.dot(float(at[0]), float(at[1]))
             self.words(x_mm + gap, y + 0.4 * scale, words[0], "name", anchor)
             self.words(x_mm + gap, y - 3.2 * scale, words[1], "detail", anchor)
+        return below - 4.0 * scale
 
-    def leaders_beside(self, labels: list[Label], words_mm: float, gap_mm: float = 8.0) -> None:
-        """Labels in a column on the right of what is drawn.
+    def leaders_beside(self, labels: list[Label], words_mm: float, gap_mm: float = 8.0) -> float:
+        """Labels in a column on the right of what is drawn. Returns the height of the lowest
+        label's lower edge.
 
         Args:
             labels: as of `leaders`.
@@ -125,8 +128,9 @@ class Sheet:
             gap_mm: from the drawing to the words.
         """
         right = float(self.high[0]) + gap_mm
-        self.leaders(labels, right, "start")
+        low = self.leaders(labels, right, "start")
         self.cover(right + words_mm, float(labels[0][1][1]))
+        return low
 
     def cover(self, x_mm: float, y_mm: float) -> None:
         """Make the page reach a point."""

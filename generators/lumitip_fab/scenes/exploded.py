@@ -26,6 +26,7 @@ ELEVATION_DEG = 32.0
 SPREAD = 0.9  # of a layer's height on the page, from layer to layer
 LABEL_MM = 10.0  # from the drawing to its labels
 WORDS_MM = 38.0  # width of the longest label
+_PAGE_MM = 160.0  # height up to which a page has words of usual size: the manual sets it smaller
 _CHORD_MM = 0.05
 _STEPS = 24  # chords of a curve on the page
 _FACES = ((0, 1, 5, 4), (1, 3, 7, 5), (4, 5, 7, 6))  # of a box, towards the viewer
@@ -186,19 +187,21 @@ def _box_corners(part: Part, low_mm: float) -> Points:
 def _label(sheet: Sheet, layers: list[Layer], finger: Finger, stack: Stack) -> None:
     """Title, the layers' names at the right, and what else is to be seen at the left."""
     left, right = float(sheet.low[0]) - LABEL_MM, float(sheet.high[0]) + LABEL_MM
+    low, top = float(sheet.low[1]), float(sheet.high[1]) + 2 * LABEL_MM
+    sheet.words_scale = max(1.0, (top - low + 2 * sheet.margin_mm) / _PAGE_MM)
+    words_mm = WORDS_MM * sheet.words_scale
     names = [(layer.words, layer.point) for layer in layers]
     details = []
     for words, place, name in _details(finger, stack):
         rise = next(layer.rise_mm for layer in layers if layer.name == name)
         details.append((words, _projected(np.array(place), rise)))
-    top = float(sheet.high[1]) + 2 * LABEL_MM
     sheet.leaders(names, right, "start")
     sheet.leaders(details, left, "end")
     sheet.words(
-        left - WORDS_MM, top, f"{finger.name.capitalize()} finger, exploded", "title", "start"
+        left - words_mm, top, f"{finger.name.capitalize()} finger, exploded", "title", "start"
     )
-    sheet.cover(left - WORDS_MM, top + 2)
-    sheet.cover(right + WORDS_MM, top)
+    sheet.cover(left - words_mm, top + 2 * sheet.words_scale)
+    sheet.cover(right + words_mm, top)
 
 
 def _details(finger: Finger, stack: Stack) -> list[tuple[tuple[str, str], Any, str]]:

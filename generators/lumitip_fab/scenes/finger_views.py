@@ -20,6 +20,7 @@ RAISED_MM = 22.0  # of the board over its place
 _BEHIND = np.diag([-1.0, 1.0, -1.0, 1.0])  # half a turn about y: the back up, the tip away
 _PLAN = View(np.eye(3)).enlarged(PLAN_SCALE)
 _WORDS_MM = 44.0
+_CABLE_WORDS = 1.3  # of a drawing on a full page
 _PAST_MM = 22.0  # of the cable, beyond the mount face
 _ABREAST_MM = 0.5  # from wire to wire of a cable, as it is drawn
 _NUMBERS_SCALE = 1.25  # of the flaps: two drawings stand beside each other
@@ -65,7 +66,8 @@ def cable_view(
         mount: for its lugs; without any the cable leaves in the middle.
         stack: for the plate.
     """
-    sheet, eye = Sheet(), view(AZIMUTH_DEG, ELEVATION_DEG).enlarged(SCALE)
+    sheet = Sheet(words_scale=_CABLE_WORDS)
+    eye = view(AZIMUTH_DEG, ELEVATION_DEG).enlarged(SCALE)
     behind = {name: mesh.moved(_BEHIND) for name, mesh in layers.items()}
     paint(sheet, eye, {"board": behind["board"]})
     hidden, open_ways = _wires(finger, mount, stack, len(colours))
@@ -75,7 +77,8 @@ def cable_view(
     labels = [(("Wires", "through the notch, under the block"), open_ways[0][0])]
     if mount.lugs:
         labels.append((("Lug", "tie the cable to it"), open_ways[0][_STEPS]))
-    sheet.leaders_beside([(words, _page(eye, at)) for words, at in labels], _WORDS_MM)
+    placed = [(words, _page(eye, at)) for words, at in labels]
+    sheet.leaders_beside(placed, _CABLE_WORDS * _WORDS_MM)
     return sheet.svg(_ANGLES)
 
 

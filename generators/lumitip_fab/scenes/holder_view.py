@@ -14,7 +14,7 @@ SCALE = 0.8
 TIE = "#1a1a1a"
 _BEYOND_MM = 10.0  # of the gripper, on both sides of the holder
 _OUTSIDE_MM = 0.6  # of a tie outside its lug
-_LABEL_MM, _WORDS_MM, _WORDS = 8.0, 50.0, 1.4
+_LABEL_MM, _WORDS_MM, _WORDS = 8.0, 75.0, 2.1
 
 
 def holder_view(holder: Holder, printed: Mesh) -> str:

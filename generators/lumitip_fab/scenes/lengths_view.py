@@ -9,16 +9,16 @@ from lumitip_fab.scenes.drawing import Sheet
 WIDTH_MM = 120.0
 """Of the longest cable on the page."""
 _END_SCALE = 3.0  # of a stripped end
-_WIRE_MM, _BREAK_MM = 1.5, 3.0  # from wire to wire; half the gap of the wire that is cut short
-_ROW_MM, _LEAST_MM = 5.0, 9.5  # between cables; from the middle of one to the next
-_NAME_MM, _WORDS_MM, _WORDS = 6.0, 60.0, 1.3
+_WIRE_MM, _BREAK_MM = 1.3, 3.0  # from wire to wire; half the gap of the wire that is cut short
+_ROW_MM, _LEAST_MM = 4.0, 6.5  # between cables; from the middle of one to the next
+_NAME_MM, _WORDS_MM, _WORDS, _MARGIN_MM = 6.0, 60.0, 1.3, 4.0
 _DOWN_MM = 4.5  # from what is measured to its dimension
 _COPPER, _INSULATION = "#d9893b", "#8d949b"
 
 
 def lengths_view(cabling: Cabling) -> str:
     """One wire with its ends, then the cables, which are to scale."""
-    sheet = Sheet(words_scale=_WORDS)
+    sheet = Sheet(_MARGIN_MM, _WORDS)
     _stripped(sheet)
     scale = WIDTH_MM / max(cable.length_mm for cable in cabling.cables)
     top = -14.0
@@ -44,8 +44,7 @@ def _stripped(sheet: Sheet) -> None:
     dimension_rows(
         sheet, [("length by its table", (0.0, -1.5), (WIDTH_MM, -1.5))], -_DOWN_MM - 3.0, -1
     )
-    sheet.words(WIDTH_MM + _NAME_MM, 0.4, "Each wire", "name", "start")
-    sheet.words(WIDTH_MM + _NAME_MM, -4.2, "stripped at both ends", "detail", "start")
+    sheet.words(WIDTH_MM + _NAME_MM, -1.7, "Each wire", "name", "start")
 
 
 def _cable(sheet: Sheet, cable: Cable, scale: float, top: float) -> float:
@@ -58,7 +57,5 @@ def _cable(sheet: Sheet, cable: Cable, scale: float, top: float) -> float:
     middle, right = (top + low) / 2, WIDTH_MM + _NAME_MM
     count = len(cable.wires)
     cut = f"{cable.name}: {count} wire{'s' * (count > 1)} of {cable.length_mm:g} mm"
-    sheet.words(right, middle + 0.4, cut, "name", "start")
-    where = f"{cable.start.board} to {cable.end.board}"
-    sheet.words(right, middle - 4.2, where, "detail", "start")
+    sheet.words(right, middle - 1.7, cut, "name", "start")
     return min(low - _ROW_MM, middle - _LEAST_MM)

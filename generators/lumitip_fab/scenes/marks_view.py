@@ -13,17 +13,18 @@ AZIMUTH_DEG, ELEVATION_DEG = -24.0, 34.0
 SCALE = 13.0
 PROBES = {"red": "#d11f2e", "black": "#1a1a1a"}
 MARK = "#1f9d48"
-_APART_MM = 44.0  # from part to part on the page
-_PROBE_MM, _TIP_MM = 19.0, 4.5  # of a probe on the page: its length, its width at the far end
+_APART_MM = 32.0  # from part to part on the page
+_PROBE_MM, _TIP_MM = 15.0, 4.0  # of a probe on the page: its length, its width at the far end
 _MARK_SHARE = 0.18  # of a body's length, as it is drawn
-_GAP_MM, _WORDS_MM = 10.0, 62.0
+_GAP_MM, _WORDS_MM, _MARGIN_MM = 10.0, 62.0, 4.0
 _SHOWN = dict.fromkeys(("anode", "cathode"), "this way round the meter shows a voltage")
 _SHOWN |= dict.fromkeys(("collector", "emitter"), "this way round light gives a voltage")
 
 
 def marks_view(packages: Packages) -> str:
     """Each part to test, its marked end on the left, with the probes at its ends."""
-    sheet, eye = Sheet(), view(AZIMUTH_DEG, ELEVATION_DEG).enlarged(SCALE)
+    sheet = Sheet(_MARGIN_MM)
+    eye = view(AZIMUTH_DEG, ELEVATION_DEG).enlarged(SCALE)
     names = {"LED": packages.led_name, "photodetector": packages.photodetector_name}
     labels: list[Label] = []
     for row, (kind, part) in enumerate(packages.unmarked.items()):
@@ -31,7 +32,8 @@ def marks_view(packages: Packages) -> str:
         with sheet.group(kind):
             _draw(sheet, eye, part, down)
         labels += list(_labels(eye, f"{kind} {names[kind]}", part, down))
-    sheet.leaders_beside(labels, _WORDS_MM, _GAP_MM)
+    low = sheet.leaders_beside(labels, _WORDS_MM, _GAP_MM)
+    sheet.cover(float(sheet.low[0]), low)
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
 
 

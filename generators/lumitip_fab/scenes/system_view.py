@@ -13,8 +13,13 @@ AZIMUTH_DEG = 35.0
 ELEVATION_DEG = 24.0
 GAP_MM = 26.0  # by which the bodies are pulled apart along the axis
 ASIDE_MM = 115.0  # by which a holder is pulled off the gripper
-WORDS_SCALE = 2.8  # of a drawing that is more than twice as large as a finger's
-LABEL_MM, WORDS_MM = 12.0, 130.0
+WORDS_PER_MM, TITLE_SHARE = 4.2 / 360.0, 2 / 3
+"""Scale of the words for each mm of the drawing's height, and of the title against them: the manual
+sets the drawing as high as its page allows."""
+PAGE_SHARE, BESIDE_MM = 1 / 115.0, 52.0
+"""Least scale of the words for each mm of the drawing's width, with what is beside it and is no
+word: so wide that the page's width is the limit."""
+LABEL_MM, WORDS = 12.0, 46.5  # from the drawing; width of the longest words at scale 1
 LAYERS = ("interface", "backing", "board", "silicone", "film")
 Words = tuple[str, str]
 
@@ -40,7 +45,7 @@ def system_view(
         system: for heights along the axis.
         tcp_mm: height of the tool centre point.
     """
-    sheet, eye = Sheet(words_scale=WORDS_SCALE), view(AZIMUTH_DEG, ELEVATION_DEG)
+    sheet, eye = Sheet(), view(AZIMUTH_DEG, ELEVATION_DEG)
     shifts = _shifts(groups, system)
     drawn = [
         Drawn(group.name, body.name, _pulled(body.mesh, group, shifts[group.name]))
@@ -184,14 +189,18 @@ def _label(
         )
     right.append((("Tool centre point", climb(tcp_mm)), _rightmost(at["emitter.backing"])))
     left.append((("Receiver", "its face to the emitter's"), _leftmost(at["receiver.backing"])))
+    wide, high = (sheet.high - sheet.low).tolist()
+    sheet.words_scale = max(WORDS_PER_MM * high, PAGE_SHARE * (wide + BESIDE_MM))
+    words_mm = WORDS * sheet.words_scale
     x_low, x_high = float(sheet.low[0]) - LABEL_MM, float(sheet.high[0]) + LABEL_MM
     top = float(sheet.high[1]) + LABEL_MM
-    sheet.leaders(right, x_high, "start")
-    sheet.leaders(left, x_low, "end")
+    low = min(sheet.leaders(right, x_high, "start"), sheet.leaders(left, x_low, "end"))
+    sheet.words_scale *= TITLE_SHARE
     start = "robot's tool flange" if flanges else "gripper"
-    sheet.words(x_low - WORDS_MM, top, f"From the {start} to the fingers", "title", "start")
-    sheet.cover(x_low - WORDS_MM, top + 4 * WORDS_SCALE)
-    sheet.cover(x_high + WORDS_MM + LABEL_MM, top)
+    sheet.words(x_low - words_mm, top, f"From the {start} to the fingers", "title", "start")
+    sheet.cover(x_low - words_mm, top + 4 * sheet.words_scale)
+    sheet.cover(x_low - words_mm, low)
+    sheet.cover(x_high + words_mm + LABEL_MM, top)
 
 
 def _rightmost(seen: Points) -> Points:
