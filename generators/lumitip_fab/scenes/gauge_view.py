@@ -13,7 +13,7 @@ from lumitip_fab.scenes.finger_views import paint
 AZIMUTH_DEG, ELEVATION_DEG = 32.0, 38.0
 SCALE = 0.9
 RAISED_MM = 24.0  # of the card over its place
-_WORDS_MM, _WORDS = 60.0, 1.4
+_WORDS_MM, _WORDS = 68.0, 1.6
 
 
 def gauge_view(card: GaugeCard, outline: Outline, printed: Mesh, layers: Mapping[str, Mesh]) -> str:
