@@ -14,6 +14,7 @@ from lumitip_fab.checks.readers.mask_page import faces_of, lacking
 from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design
+from lumitip_fab.docs.boards import LIT_V
 from lumitip_fab.errors import OutputError
 from lumitip_fab.text import page_letters
 
@@ -199,6 +200,8 @@ def _wrong_units(manual: Manual, design: Design) -> list[str]:
     led = design.packages.led
     if not led.mark_is_known:  # 0.15 V less at the 1 mA of a multimeter
         volts.add(round(led.forward_voltage_v - 0.15, 1))
+    if not design.packages.photodetector.mark_is_known:
+        volts.add(LIT_V)
     heat = {figure for s in design.heat for figure in (s.temperature_c, s.limit_c)}
     allowed = {"h": {design.mould.cure_h, design.mould.glue_hard_h}, "°C": heat, "V": volts}
     matches = re.findall(r"(?<![\w.])(\d+(?:\.\d+)?) (h|°C|V)\b", " ".join(manual.blocks))

@@ -19,19 +19,19 @@ def note_missing(files: Files) -> None:
 
 
 def note_of_the_mark(files: Files) -> None:
-    edit(files, "assembly.txt", b"pad 1 is the collector", b"pad 1 is the emitter")
+    edit(files, "assembly.txt", b"pad 1 is the emitter", b"pad 1 is the collector")
 
 
 def note_too_sure(files: Files) -> None:
-    edit(files, "assembly.txt", b"collector is inferred", b"collector is certain")
+    edit(files, "assembly.txt", b"emitter is inferred", b"emitter is certain")
 
 
 def note_of_a_place(files: Files) -> None:
-    edit(files, "assembly.txt", rb"(Q5  collector \S+ )\S+", rb"\g<1>1.000")
+    edit(files, "assembly.txt", rb"(Q5  emitter \S+ )\S+", rb"\g<1>1.000")
 
 
 def note_without_a_figure(files: Files) -> None:
-    edit(files, "assembly.txt", rb"(Q5  collector \S+ )\S+", rb"\g<1>nan")
+    edit(files, "assembly.txt", rb"(Q5  emitter \S+ )\S+", rb"\g<1>nan")
 
 
 def note_without_a_part(files: Files) -> None:
@@ -127,7 +127,7 @@ def check_left_out(files: Files) -> None:
 
 
 def place_of_a_part_of_no_board(files: Files) -> None:
-    edit(files, "assembly.txt", rb"(Q5  .*\n)", rb"\1Q99  collector 1.000 1.000  emitter 2.0 1.0\n")
+    edit(files, "assembly.txt", rb"(Q5  .*\n)", rb"\1Q99  emitter 1.000 1.000  collector 2.0 1.0\n")
 
 
 def no_stop_line(files: Files) -> None:
