@@ -161,6 +161,8 @@ TABLES = {
     "number at LCSC lost": (BOM, rb"C114636,", b",", {"bom"}),
     "another resistor": (BOM, rb"RC0603FR-0775KL", b"RC0603FR-077K5L", {"bom"}),
     "another value": (BOM, rb"75K,", b"76K,", {"bom"}),
+    "stop line lost": (BOM, rb" \(STOP: confirm polarity first\)", b"", {"bom"}),
+    "stop line of another part": (BOM, rb"74HC4051PW,", b"74HC4051PW (STOP),", {"bom"}),
     "another footprint": (BOM, rb"RESC1608", b"RESC2012", {"bom"}),
     "row lost": (PLACES, rb"Q5,[^\n]*\n", b"", {"placed"}),
     "row twice": (PLACES, rb"(Q5,[^\n]*\n)", rb"\g<1>\g<1>", {"placed"}),
@@ -181,6 +183,18 @@ def test_a_damage_of_a_table(name: str, damaged_boards: Path) -> None:
         told = package.read(f"receiver_{table}")
     (order / f"{SECOND}_receiver_{table}").write_bytes(told)
     assert failing(damaged_boards, "orders", "receiver") == wanted
+
+
+def test_a_placement_list_without_a_stop_line(damaged_boards: Path) -> None:
+    order = folder_of(damaged_boards)
+    rezip(
+        order / f"{FIRST}_receiver.zip",
+        lambda files: edit(files, PLACES, rb"(Q5,[^,(]*) \(STOP[^)]*\)", rb"\1"),
+    )
+    with zipfile.ZipFile(order / f"{FIRST}_receiver.zip") as package:
+        told = package.read(f"receiver_{PLACES}")
+    (order / f"{FIRST}_receiver_{PLACES}").write_bytes(told)
+    assert failing(damaged_boards, "orders", "receiver") == {"placed"}
 
 
 @pytest.mark.parametrize("damage", FOLDER_DAMAGES, ids=lambda d: d.__name__)

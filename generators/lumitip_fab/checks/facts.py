@@ -13,6 +13,7 @@ from lumitip_fab.checks.readers.kicad_board import Part, read_board
 from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.readers.vertices import corners_mm
 from lumitip_fab.design import Design
+from lumitip_fab.text import passage
 
 Facts = Mapping[str, Any]
 _SHARE = 1e-4
@@ -114,12 +115,16 @@ def _same(value: Any, text: str) -> bool:
 
 def _parts(outputs: Path, path: str, facts: Facts, design: Design) -> Iterator[str]:
     """Of a board: the lines of its tables for a PCB fab, and the numbers of all its parts."""
-    board = Path(path).stem
+    board, stop = Path(path).stem, f" ({passage('boards/fab/notes.txt', 'stop_row')})"
     for fab in design.fabs:
         tables = outputs / f"boards/{board}/order/{fab.name}_{board}_bom.csv"
         rows = table(tables.read_text(encoding="utf-8"))
         for part, row in zip(facts["parts"], rows, strict=True):
-            other = [field for head, field in fab.bom if field in part and part[field] != row[head]]
+            other = [
+                field
+                for head, field in fab.bom
+                if field in part and part[field] != row[head].removesuffix(stop)
+            ]
             yield from (f"{field} of {part['refs']:.20}" for field in other)
     of_facts = {
         ref: (row["manufacturer"], row["part"])

@@ -1,6 +1,7 @@
 """The tables of a zip, bill of materials and placement list, against the parts on the board."""
 
 import math
+import re
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +14,7 @@ from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.result import Measurement, count
 from lumitip_fab.design import Fab
+from lumitip_fab.text import passage
 
 TURN_DEG = 0.1
 Files = dict[str, bytes]
@@ -75,10 +77,20 @@ def _other_texts(read: ReadBoard, row: dict[str, str], refs: list[str]) -> Itera
     """What a row has of its parts, and the board's file has not."""
     for part in (read.parts[ref] for ref in refs if ref in read.parts):
         maker = dict(part.fields).get("Manufacturer", "")
-        own = {"value": part.value, "footprint": part.footprint, "manufacturer": maker}
+        own = {"value": _value(read, part), "footprint": part.footprint, "manufacturer": maker}
         for field in sorted(own.keys() & row.keys()):
             if row[field] != own[field]:
                 yield f"{part.ref}: {field} {row[field]:.20}"
+
+
+def _value(read: ReadBoard, part: Part) -> str:
+    """The value of a part, and a stop line after that of parts at the cells whose polarity is not
+    known."""
+    if read.finger is None or read.design.packages.at_cells(read.finger).mark_is_known:
+        return part.value
+    if not re.fullmatch(rf"{read.finger.cells_hold.letter}\d+(_\d+)?", part.ref):
+        return part.value
+    return f"{part.value} ({passage('boards/fab/notes.txt', 'stop_row')})"
 
 
 def _turned_by(read: ReadBoard, row: dict[str, str], part: Part, fab: Fab) -> float:

@@ -158,7 +158,9 @@ def polarity_test(packages: Packages, fingers: tuple[Finger, ...]) -> str:
     parts = Counter(part.kind for finger in fingers for part in finger.parts)
     counted = f"{parts['led']} LEDs, {parts['photodetector']} photodetectors"
     tests_text = "".join(tests)
-    return _text("polarity", tests=tests_text, counted=counted, tested=TESTED) if tests else ""
+    stop = passage("boards/fab/notes.txt", "stop_row")
+    values = {"tests": tests_text, "counted": counted, "tested": TESTED, "stop_row": stop}
+    return _text("polarity", **values) if tests else ""
 
 
 def _text(name: str, /, **values: object) -> str:

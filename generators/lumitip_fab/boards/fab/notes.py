@@ -3,10 +3,12 @@
 from collections.abc import Iterator
 
 from lumitip_fab.boards.fab.order import (
+    TEXTS,
     assembled,
     bom_rows,
     bought,
     by_hand,
+    polarity_unknown,
     turned_by_assumption,
 )
 from lumitip_fab.boards.model import BoardModel, Placement
@@ -16,7 +18,6 @@ from lumitip_fab.design.boards import thickness_off_mm
 from lumitip_fab.text import passage
 
 STOP_FILE = "STOP_READ_FIRST.txt"
-_TEXTS = "boards/fab/notes.txt"
 _OTHER = {"anode": "cathode", "cathode": "anode", "collector": "emitter", "emitter": "collector"}
 _POLAR = {"led": "LED", "photodetector": "photodetector"}
 
@@ -24,10 +25,10 @@ _POLAR = {"led": "LED", "photodetector": "photodetector"}
 def stop_note(board: Placement) -> dict[str, bytes]:
     """The file that stops a PCB fab's operator, where the polarity of the parts at the cells is
     not known; nothing where it is, and without cells."""
-    if not board.cells or board.cells.part.mark_is_known:
+    if board.cells is None or not polarity_unknown(board):
         return {}
     chip, part = board.cells.part, next(part for part in bought(board) if part.kind in _POLAR)
-    text = passage(_TEXTS, "stop").format(
+    text = passage(TEXTS, "stop").format(
         refs=_refs(board, part.kind), part=part.part, chip=chip, other=_OTHER[chip.marked]
     )
     return {STOP_FILE: text.encode()}
@@ -69,7 +70,7 @@ def _off(board: Placement) -> str:
 def panel_note(panel: Panel) -> str:
     """Lines of the fabrication note on copies, gaps, tabs, rails and marks."""
     rules, copies = panel.rules, len(panel.copies)
-    return passage(_TEXTS, "panel").format(
+    return passage(TEXTS, "panel").format(
         panel=panel, rules=rules, copies=copies, radius_mm=rules.gap_mm / 2
     )
 
@@ -103,7 +104,7 @@ def assembly_note(board: Placement, fab: Fab) -> bytes:
 def _polarity(board: Placement, chip: Led | Photodetector) -> Iterator[str]:
     part = next(part for part in bought(board) if part.kind in _POLAR)
     for name in ("pads", chip.mark_confidence if chip.mark_is_known else "assumed"):
-        yield passage(_TEXTS, name).format(
+        yield passage(TEXTS, name).format(
             refs=_refs(board, part.kind),
             part=part.part,
             kind=_POLAR[part.kind],
@@ -116,7 +117,7 @@ def _polarity(board: Placement, chip: Led | Photodetector) -> Iterator[str]:
 def _flexible(flexible: Flexible, outline: str) -> Iterator[str]:
     """Order note of a flexible board, and the file with the stiffener's outline."""
     total_mm = flexible.core_mm + 2 * (flexible.copper_mm + flexible.coverlay_mm)
-    yield passage(_TEXTS, "flexible").format(
+    yield passage(TEXTS, "flexible").format(
         flexible=flexible, total_mm=total_mm, stiff=flexible.stiffener, outline=outline
     )
     yield ""
@@ -151,7 +152,7 @@ def _by_hand(board: Placement) -> Iterator[str]:
     """Parts of the board that the PCB fab does not mount."""
     parts = [f"{p.ref} ({p.manufacturer} {p.part})" for p in by_hand(board)]
     if parts:
-        yield passage(_TEXTS, "by_hand").format(parts=", ".join(parts))
+        yield passage(TEXTS, "by_hand").format(parts=", ".join(parts))
         yield ""
 
 
@@ -159,7 +160,7 @@ def _assumed(board: Placement, fab: Fab) -> Iterator[str]:
     """Parts whose angle in the placement list is assumed."""
     refs = [part.ref for part in assembled(board) if turned_by_assumption(part, fab)]
     if refs:
-        yield passage(_TEXTS, "turned").format(refs=", ".join(refs))
+        yield passage(TEXTS, "turned").format(refs=", ".join(refs))
         yield ""
 
 

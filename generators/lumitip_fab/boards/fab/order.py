@@ -5,22 +5,26 @@ import io
 import re
 import zipfile
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 from lumitip_fab.boards.fab.gerber import gerber_layers, plated_drills, unplated_drills
-from lumitip_fab.boards.model import BoardModel, Placement
+from lumitip_fab.boards.model import AT_CELLS, BoardModel, Placement
 from lumitip_fab.design import Component, Fab
+from lumitip_fab.text import passage
 
 Row = dict[str, str]
+TEXTS = "boards/fab/notes.txt"
+"""Texts of an order."""
 
 
 def bill_of_materials(board: Placement, fab: Fab) -> bytes:
     """One row for each kind of part, with its references."""
-    return _table(fab.bom, bom_rows(assembled(board)))
+    return _table(fab.bom, bom_rows(_listed(board)))
 
 
 def placement_list(board: Placement, fab: Fab) -> bytes:
     """One row for each part that is mounted; places are in the frame of the Gerber files."""
-    return _table(fab.positions, [_placed(part, fab) for part in assembled(board)])
+    return _table(fab.positions, [_placed(part, fab) for part in _listed(board)])
 
 
 def bought(board: Placement) -> list[Component]:
@@ -32,6 +36,21 @@ def assembled(board: Placement) -> list[Component]:
     """The parts that the PCB fab mounts, in order of reference: those that are soldered on by hand
     are not ordered from it."""
     return [part for part in bought(board) if part.assembled]
+
+
+def polarity_unknown(board: Placement) -> bool:
+    """Whether the marked terminal of the parts at the cells is neither measured nor read from a
+    datasheet."""
+    return board.cells is not None and not board.cells.part.mark_is_known
+
+
+def _listed(board: Placement) -> Iterator[Component]:
+    """The mounted parts as the tables list them: where the polarity of those at the cells is not
+    known, their value ends with a stop line, since an operator may see no more than a table."""
+    stop = passage(TEXTS, "stop_row") if polarity_unknown(board) else ""
+    for part in assembled(board):
+        at_cell = stop and part.kind in AT_CELLS
+        yield replace(part, value=f"{part.value} ({stop})") if at_cell else part
 
 
 def by_hand(board: Placement) -> list[Component]:
