@@ -126,6 +126,14 @@ def check_left_out(files: Files) -> None:
     edit(files, "assembly.txt", rb"CHECK BEFORE PLACING: .*\n", b"")
 
 
+def small_board_unsaid(files: Files) -> None:
+    edit(files, "assembly.txt", rb"SMALL BOARD: .*\n", b"")
+
+
+def another_least_size(files: Files) -> None:
+    edit(files, "assembly.txt", rb"less than 50 x 50 mm", b"less than 40 x 40 mm")
+
+
 def place_of_a_part_of_no_board(files: Files) -> None:
     edit(files, "assembly.txt", rb"(Q5  .*\n)", rb"\1Q99  emitter 1.000 1.000  collector 2.0 1.0\n")
 
@@ -171,6 +179,8 @@ NOTE_DAMAGES: dict[Damage, set[str]] = {
     either_way_round: {"note"},
     not_to_be_placed: {"note"},
     check_left_out: {"note"},
+    small_board_unsaid: {"note"},
+    another_least_size: {"note"},
     place_of_a_part_of_no_board: {"note"},
     no_stop_line: {"stop"},
     stop_line_of_other_parts: {"stop"},

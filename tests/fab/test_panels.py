@@ -1,14 +1,21 @@
 """Which boards get a panel, and how large it is."""
 
 import dataclasses
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from lumitip_fab.boards.fab.notes import assembly_note
+from lumitip_fab.boards.placement import place
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive import derive
-from lumitip_fab.design import Panel
+from lumitip_fab.design import Design, Panel
+from lumitip_fab.design.least_size import is_too_small
+from lumitip_fab.docs.boards import ordering
+from lumitip_fab.docs.spec import outside
 from lumitip_fab.errors import InputError
+from lumitip_fab.pipeline.artefact import Files
 
 RAILS = {"board.panel": "rails"}
 
@@ -89,6 +96,62 @@ def test_fabs_that_take_every_board_need_none(inputs: dict[str, Input], vary: An
     config = vary(inputs["published"], RAILS)
     assert derive(with_limits(config)).panels == ()
     assert derive(with_limits(config, least_mm=(20.0, 20.0))).panels == ()
+
+
+SMALL = "emitter, receiver, breakout and flange"
+
+
+def said(design: Design) -> dict[str, list[str]]:
+    """What spec and manual say of boards that are too small for a fab."""
+    ordered = ordering(design, Files(Path(), {}))
+    return {
+        "spec": [
+            f"{row.quantity}: {row.computed}; {row.reason}"
+            for row in outside(design)
+            if row.quantity.startswith("least size for assembly")
+        ],
+        "manual": [line for line in ordered.splitlines() if line.startswith("- smaller than")],
+    }
+
+
+def test_spec_and_manual_name_the_boards_that_a_fab_does_not_assemble(
+    inputs: dict[str, Input], vary: Any
+) -> None:
+    design = derive(vary(inputs["published"], {"board.panel": "none"}))
+    assert said(design)["manual"] == [
+        f"- smaller than 70 x 70 mm, the least of jlcpcb: {SMALL}",
+        f"- smaller than 50 x 50 mm, the least of generic and pcbway: {SMALL}",
+    ]
+    rows = said(design)["spec"]
+    assert [row.partition(", bare")[0].partition("; bare")[0] for row in rows] == [
+        f"least size for assembly, {fabs}: {least}; by parts/fabs.toml; smaller: {SMALL}. "
+        'board.panel = "rails" makes a panel of each'
+        for fabs, least in (("jlcpcb", "70 x 70 mm"), ("generic and pcbway", "50 x 50 mm"))
+    ]
+
+
+def test_a_board_with_a_panel_or_of_the_least_size_is_not_named(
+    inputs: dict[str, Input], vary: Any
+) -> None:
+    config, nothing = inputs["published"], {"spec": [], "manual": []}
+    assert said(derive(vary(config, RAILS))) == nothing
+    assert said(derive(with_limits(config, least_mm=(20.0, 20.0)))) == nothing
+    assert said(derive(with_limits(config))) == nothing
+    flexible = derive(inputs["flex"])
+    assert all("emitter" not in line for line in said(flexible)["manual"])
+
+
+@pytest.mark.slow_cases
+@pytest.mark.parametrize(("values", "small"), [({}, True), (RAILS, False)])
+def test_the_note_in_the_zip_says_that_the_board_is_too_small(
+    inputs: dict[str, Input], vary: Any, values: dict[str, str], small: bool
+) -> None:
+    design = derive(vary(inputs["published"], values))
+    placed = place(design, design.emitter)
+    for fab in design.fabs:
+        note = assembly_note(placed, fab, is_too_small(design, "emitter", fab)).decode()
+        least = "70 x 70" if fab.name == "jlcpcb" else "50 x 50"
+        assert (f"\nSMALL BOARD: less than {least} mm" in note) == small
 
 
 def test_longer_edges_have_more_tabs(inputs: dict[str, Input], vary: Any) -> None:

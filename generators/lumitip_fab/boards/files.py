@@ -16,6 +16,7 @@ from lumitip_fab.boards.teardrops import with_teardrops
 from lumitip_fab.boards.verify import require_clean_drc
 from lumitip_fab.design import AuxiliaryBoard, Design, Finger
 from lumitip_fab.design.frames import board_page_to_auxiliary, board_page_to_sensor
+from lumitip_fab.design.least_size import is_too_small
 from lumitip_fab.pipeline.artefact import Artefact
 
 
@@ -54,7 +55,8 @@ def model_files(design: Design, model: BoardModel) -> tuple[Artefact, ...]:
         **picture_files(model, board.finish.mask),
     }
     for fab in design.fabs:
-        texts = {**notes, f"{board.name}_assembly.txt": assembly_note(board, fab)}
+        small = is_too_small(design, board.name, fab)
+        texts = {**notes, f"{board.name}_assembly.txt": assembly_note(board, fab, small)}
         orders = order_files(model, layers, texts, fab, board.name)
         files |= {f"order/{path}": data for path, data in orders.items()}
     # Cells are in the sensor frame of their finger, and with them the whole board.

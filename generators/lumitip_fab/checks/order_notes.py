@@ -125,12 +125,23 @@ def _assembly(read: ReadBoard, fab: Fab, stiffener: str) -> Iterator[str]:
     yield _header(read, caption + copies)
     if read.flexible:
         yield from _flexible(read.flexible, stiffener)
+    elif _is_small(read, fab):
+        yield passage(_TEXTS, "small").format(least=fab.least_mm)
     if read.finger and read.cells_hold:
         yield from _polarity(read, read.cells_hold.letter)
     if fab.remark:
         yield from filter(None, fab.remark.splitlines())
     first = "Places of the terminals" if read.finger else "Pad 1 of each part"
     yield f"{first}, in mm as in the Gerber files, seen from the front:"
+
+
+def _is_small(read: ReadBoard, fab: Fab) -> bool:
+    """Whether the drawn board is smaller than the least that a fab assembles, and has no panel."""
+    if fab.least_mm is None or read.name in {panel.board for panel in read.design.panels}:
+        return False
+    x_min, y_min, x_max, y_max = shapely.union_all(list(read.board.edges)).bounds
+    sides = x_max - x_min, y_max - y_min
+    return any(have < least - SIZE_MM for have, least in zip(sides, fab.least_mm, strict=True))
 
 
 def _flexible(flexible: Flexible, stiffener: str) -> Iterator[str]:

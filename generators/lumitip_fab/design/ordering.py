@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from lumitip_fab.design.shape import Box
+from lumitip_fab.design.shape import Box, Point
 
 Pairs = tuple[tuple[str, str], ...]
 
@@ -34,6 +34,8 @@ class Fab:
     from the cathode."""
     remark: str
     """Remark on ordering there; may be empty."""
+    least_mm: Point | None = None
+    """Smallest board that it assembles; none of one that takes every board."""
 
 
 @dataclass(frozen=True)

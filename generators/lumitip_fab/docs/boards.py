@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 
 from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Packages
 from lumitip_fab.design.boards import GLUE_FILM_MM, thickness_off_mm
+from lumitip_fab.design.least_size import too_small
 from lumitip_fab.docs.bill import TESTED
 from lumitip_fab.docs.protection import boards_of_later, protection_note
 from lumitip_fab.docs.wiring import listed
@@ -127,14 +128,20 @@ def _unplaced(files: Files) -> str:
 
 
 def _panels(design: Design) -> str:
-    """Panels to order instead of boards, for a fab that assembles them."""
-    if not design.panels:
-        return ""
-    listed = "\n".join(
-        f"- `boards/{panel.name}/order/`: {len(panel.copies)} times {panel.board}"
-        for panel in design.panels
-    )
-    return _text("panels", listed=listed)
+    """Panels to order instead of boards, for a fab that assembles them; without panels, the boards
+    that are too small for it."""
+    if design.panels:
+        lines = [
+            f"- `boards/{panel.name}/order/`: {len(panel.copies)} times {panel.board}"
+            for panel in design.panels
+        ]
+        return _text("panels", listed="\n".join(lines))
+    lines = [
+        f"- smaller than {small.least_mm[0]:g} x {small.least_mm[1]:g} mm, the least of "
+        f"{listed([*small.fabs])}: {listed([*small.boards])}"
+        for small in too_small(design)
+    ]
+    return _text("small", listed="\n".join(lines)) if lines else ""
 
 
 def _reflowed(design: Design) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Flange, Holder, Mount, TieLug
 from lumitip_fab.design.frames import gripper_to_base, gripper_to_tool
 from lumitip_fab.design.insert import LEAST_MARGIN_MM
+from lumitip_fab.design.least_size import too_small
 from lumitip_fab.docs.row import Row, rows_of
 from lumitip_fab.docs.spec_circuit import (
     ambient_rows,
@@ -18,6 +19,7 @@ from lumitip_fab.docs.spec_circuit import (
     input_rows,
     string_rows,
 )
+from lumitip_fab.docs.wiring import listed
 
 
 def outside(design: Design) -> Iterator[Row]:
@@ -56,6 +58,9 @@ def outside(design: Design) -> Iterator[Row]:
         yield from _stack(flange)
     for panel in design.panels:
         yield from rows_of("panel", panel=panel, copies=len(panel.copies))
+    for small in too_small(design):
+        names = {"fabs": listed([*small.fabs]), "boards": listed([*small.boards])}
+        yield from rows_of("small", least=small.least_mm, **names)
 
 
 def _breakout(auxiliary: AuxiliaryBoard) -> Iterator[Row]:

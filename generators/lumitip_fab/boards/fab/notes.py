@@ -75,13 +75,14 @@ def panel_note(panel: Panel) -> str:
     )
 
 
-def assembly_note(board: Placement, fab: Fab) -> bytes:
+def assembly_note(board: Placement, fab: Fab, small: bool = False) -> bytes:
     """Plain text: what marks mean, how far to trust that, and where each terminal goes; on a board
     without parts of polarity, where the first pad of each part is.
 
     Args:
         board: parts in their places.
         fab: the PCB fab, whose remark is added.
+        small: whether it does not assemble the board by itself.
     """
     chip = board.cells.part if board.cells else None
     first = "Pad 1 of each part" if chip is None else "Places of the terminals"
@@ -91,6 +92,7 @@ def assembly_note(board: Placement, fab: Fab) -> bytes:
         f"design {board.design_hash[:8]}",
         "",
         *(_flexible(board.flexible, stiffener) if board.flexible else ()),
+        *((passage(TEXTS, "small").format(least=fab.least_mm), "") if small else ()),
         *((*_polarity(board, chip), *_others(board)) if chip else _behind(board)),
         *_by_hand(board),
         *_assumed(board, fab),

@@ -97,6 +97,7 @@ def derive_fabs(config: Input) -> tuple[Fab, ...]:
             part_rotations=tuple(fab.part_rotations.items()),
             anode_first=(led.order_number,) if led.marked == "anode" else (),
             remark=fab.remark,
+            least_mm=fab.panel.least_mm if fab.panel else None,
         )
         for name, fab in config.catalogue.fabs.items()
     )
