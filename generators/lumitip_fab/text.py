@@ -47,6 +47,11 @@ def as_written(text: str) -> str:
     return _SIGNS.sub(r"\\\g<0>", text)
 
 
+def listed(names: list[str]) -> str:
+    """Names as a sentence has them, such as `"a, b and c"`."""
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+
+
 def resistor_code(ohm: float) -> str:
     """The value as printed on drawings and in order numbers: 150R, 4K99, 75K, 1M."""
     power, letter = next((p, c) for p, c in ((6, "M"), (3, "K"), (0, "R")) if ohm >= 10**p or not p)

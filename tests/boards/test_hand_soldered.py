@@ -81,7 +81,7 @@ def test_a_schematic_whose_own_outputs_would_have_them_is_seen(damaged_boards: P
 
 def test_a_note_without_the_parts_of_assumed_rotation_is_seen(damaged_boards: Path) -> None:
     def damage(files: Files) -> None:
-        files[NOTE] = files[NOTE].replace(b"ROTATION ASSUMED: F1, ", b"ROTATION ASSUMED: ")
+        files[NOTE] = files[NOTE].replace(b"ROTATION ASSUMED: J2, ", b"ROTATION ASSUMED: ")
 
     rezip(damaged_boards / ORDER / "generic_flange.zip", damage)
     assert failing(damaged_boards, "orders", "flange") == {"assumed"}

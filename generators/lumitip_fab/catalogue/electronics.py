@@ -34,7 +34,26 @@ class Chip(Ordered, Entry):
         return along, max(self.pad_mm[1], self.body_mm[1])
 
 
-class Optical(Chip):
+class Marked(Chip):
+    """A chip with a mark at one of its terminals."""
+
+    marked_confidence: Confidence | None = None
+    """Confidence in the terminal that its mark shows; by default that of the entry. Write
+    "measured" after the test with a multimeter in the build manual: the order files then carry no
+    stop line, and no line that asks to check it."""
+
+    @property
+    def mark_confidence(self) -> Confidence:
+        """Confidence in the marked terminal."""
+        return self.marked_confidence or self.confidence
+
+    @property
+    def mark_is_known(self) -> bool:
+        """Whether the marked terminal is measured, or read from a datasheet."""
+        return self.mark_confidence in TRUSTED
+
+
+class Optical(Marked):
     """A chip that emits or detects light through its top."""
 
     die_height_mm: Length
@@ -51,23 +70,10 @@ class Optical(Chip):
 
 
 class Polar(Optical):
-    """A part with a mark at one of its terminals."""
+    """A part at a cell, with a mark at one of its terminals."""
 
     marked: str
     """Terminal that the part's mark shows; the board's mark is beside it."""
-    marked_confidence: Confidence | None = None
-    """Confidence in `marked`; by default that of the entry. Write "measured" after the test with
-    a multimeter in the build manual: the order files then carry no stop line."""
-
-    @property
-    def mark_confidence(self) -> Confidence:
-        """Confidence in the marked terminal."""
-        return self.marked_confidence or self.confidence
-
-    @property
-    def mark_is_known(self) -> bool:
-        """Whether the marked terminal is measured, or read from a datasheet."""
-        return self.mark_confidence in TRUSTED
 
 
 class Led(Polar):
@@ -87,7 +93,7 @@ class Led(Polar):
     """Exponent m of the radiant intensity cos(angle) ** m; 1 is Lambertian."""
 
 
-class Indicator(Chip):
+class Indicator(Marked):
     """A light-emitting diode to look at: terminal 1 is its cathode."""
 
     colour: Literal["green", "yellow-green", "yellow", "orange", "red", "blue", "white"]

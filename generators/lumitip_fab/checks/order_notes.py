@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 
 from lumitip_fab.checks.board_read import ReadBoard
+from lumitip_fab.checks.order_ways import TEXTS, lying
 from lumitip_fab.checks.panel_read import PanelBoard
 from lumitip_fab.design import Fab, Flexible
 from lumitip_fab.design.boards import thickness_off_mm
@@ -17,11 +18,6 @@ SIZE_MM = 0.006
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 _REF = r"[A-Z]+\d+(?:_\d+)?"
 _REFS = rf"{_REF}(?:, {_REF})*"
-_OTHER = {"anode": "cathode", "cathode": "anode", "collector": "emitter", "emitter": "collector"}
-_SYMMETRIC = ("R", "RN", "C")
-"""Letters of parts that have no polarity."""
-_TEXTS = "boards/fab/notes.txt"
-"""Wording that both notes share with whoever writes them; the figures in it come from the board."""
 _ROW = re.compile(rf"({_REF})  [-a-z\d. ]+")
 
 
@@ -74,7 +70,7 @@ def _header(read: ReadBoard, caption: str) -> str:
 
 def _panel(read: PanelBoard) -> Iterator[str]:
     panel, rules = read.panel, read.panel.rules
-    text = passage(_TEXTS, "panel").format(
+    text = passage(TEXTS, "panel").format(
         panel=panel, rules=rules, copies=len(panel.copies), radius_mm=rules.gap_mm / 2
     )
     yield from filter(None, text.splitlines())
@@ -108,7 +104,7 @@ def other_lines(read: ReadBoard, fab: Fab, note: str, stiffener: str) -> Iterato
 
 def _maybe() -> tuple[str, ...]:
     """Patterns of lines of which other checks know which parts they name, if there are any."""
-    by_hand, turned = (re.escape(passage(_TEXTS, name)) for name in ("by_hand", "turned"))
+    by_hand, turned = (re.escape(passage(TEXTS, name)) for name in ("by_hand", "turned"))
     bought = rf"{_REF} \(.+?\)(?:, {_REF} \(.+?\))*"
     return (
         rf"ON THE BACK: {_REFS}\. Everything else is on the front\.",
@@ -126,9 +122,8 @@ def _assembly(read: ReadBoard, fab: Fab, stiffener: str) -> Iterator[str]:
     if read.flexible:
         yield from _flexible(read.flexible, stiffener)
     elif _is_small(read, fab):
-        yield passage(_TEXTS, "small").format(least=fab.least_mm)
-    if read.finger and read.cells_hold:
-        yield from _polarity(read, read.cells_hold.letter)
+        yield passage(TEXTS, "small").format(least=fab.least_mm)
+    yield from lying(read)
     if fab.remark:
         yield from filter(None, fab.remark.splitlines())
     first = "Places of the terminals" if read.finger else "Pad 1 of each part"
@@ -146,39 +141,7 @@ def _is_small(read: ReadBoard, fab: Fab) -> bool:
 
 def _flexible(flexible: Flexible, stiffener: str) -> Iterator[str]:
     total_mm = flexible.core_mm + 2 * (flexible.copper_mm + flexible.coverlay_mm)
-    text = passage(_TEXTS, "flexible").format(
+    text = passage(TEXTS, "flexible").format(
         flexible=flexible, total_mm=total_mm, stiff=flexible.stiffener, outline=stiffener
     )
     yield from filter(None, text.splitlines())
-
-
-def _polarity(read: ReadBoard, letter: str) -> Iterator[str]:
-    """The mark of the parts at the cells, the dots of chips, and what may be turned."""
-    assert read.finger
-    chip = read.design.packages.at_cells(read.finger)
-    for name in ("pads", chip.mark_confidence if chip.mark_is_known else "assumed"):
-        yield passage(_TEXTS, name).format(
-            refs=_range(read, letter, chip.order_number),
-            part=chip.order_number,
-            kind="LED" if letter == "D" else "photodetector",
-            chip=chip,
-            other=_OTHER[chip.marked],
-        )
-    if not read.strings:
-        yield f"{_range(read, 'U')}: lead 1 is at the dot, on the notch's side."
-    elif (switch := read.design.packages.switch) is not None:
-        yield f"{_range(read, 'Q', switch.order_number)}: lead 1 is at the dot."
-    plain = [found for kind in _SYMMETRIC if (found := _range(read, kind))]
-    yield f"{' and '.join(plain)}: either way round."
-
-
-def _range(read: ReadBoard, letter: str, order_number: str = "") -> str:
-    """First and last reference of the bought parts with a letter, and with an order number."""
-    found = [
-        (int(ref[2] or 0), int(ref[1]), part.ref)
-        for part in read.board.parts
-        if part.bought and (ref := re.fullmatch(rf"{letter}(\d+)(?:_(\d+))?", part.ref))
-        if not order_number or read.ordered(part.ref)[0] == order_number
-    ]
-    ends = dict.fromkeys(ref for _, _, ref in (min(found), max(found))) if found else ()
-    return " to ".join(ends)

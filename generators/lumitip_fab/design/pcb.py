@@ -120,6 +120,9 @@ class Component:
     """Name of each pad, in the order of the pads; empty where a part has no names."""
     hand_soldered: bool = False
     """Whether it is soldered on by hand after the PCB fab has mounted the rest."""
+    mark_confidence: str = ""
+    """Confidence in the cathode of an LED to look at, which its mark is taken for; empty of other
+    parts."""
 
     @property
     def data_page(self) -> str:

@@ -8,9 +8,8 @@ from lumitip_fab.design.boards import GLUE_FILM_MM, thickness_off_mm
 from lumitip_fab.design.least_size import too_small
 from lumitip_fab.docs.bill import TESTED
 from lumitip_fab.docs.protection import boards_of_later, protection_note
-from lumitip_fab.docs.wiring import listed
 from lumitip_fab.pipeline.artefact import Files
-from lumitip_fab.text import as_written, passage
+from lumitip_fab.text import as_written, listed, passage
 
 PROUD_MM = 0.05
 """So much thicker than its pocket is deep a board may be."""

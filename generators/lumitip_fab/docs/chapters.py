@@ -25,10 +25,10 @@ from lumitip_fab.docs.orders import amount, money
 from lumitip_fab.docs.page import html_page
 from lumitip_fab.docs.protection import boards_of_later
 from lumitip_fab.docs.sheet import pdf_sheets
-from lumitip_fab.docs.wiring import ends_of_fingers, listed, wiring_steps
+from lumitip_fab.docs.wiring import ends_of_fingers, wiring_steps
 from lumitip_fab.docs.wrapping import mask_facts, wrapping_steps
 from lumitip_fab.pipeline.artefact import Artefact, Files
-from lumitip_fab.text import as_written, passage
+from lumitip_fab.text import as_written, listed, passage
 
 RUN_MIN, ACCEPT_MIN = 15, 10
 """How long calibration takes, and the test with the gauge card (assumed)."""

@@ -10,8 +10,8 @@ from lumitip_fab.design.electrical import Indicator
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
 from lumitip_fab.docs.protection import TVS, boards_of_later, protection_note
 from lumitip_fab.docs.steps import numbered
-from lumitip_fab.docs.wiring import SLOT_MM2, listed, pressed
-from lumitip_fab.text import as_written, passage
+from lumitip_fab.docs.wiring import SLOT_MM2, pressed
+from lumitip_fab.text import as_written, listed, passage
 
 _SUPPLY = re.compile(r"[\d.]+V")
 OWN_MM = (12, 16, 20, 25)

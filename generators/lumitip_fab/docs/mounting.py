@@ -6,8 +6,7 @@ from lumitip_fab.design import Design, Holder
 from lumitip_fab.docs.cable_ways import cable_ways
 from lumitip_fab.docs.flange import plugs
 from lumitip_fab.docs.steps import numbered
-from lumitip_fab.docs.wiring import listed
-from lumitip_fab.text import passage
+from lumitip_fab.text import listed, passage
 
 FINGERS_MIN = 20
 """How long mounting the fingers takes (assumed)."""

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 from string import ascii_letters, digits
 
 from lumitip_fab.design import AuxiliaryBoard, Component, Design
-from lumitip_fab.docs.wiring import ends_of_fingers, listed
-from lumitip_fab.text import passage
+from lumitip_fab.docs.wiring import ends_of_fingers
+from lumitip_fab.text import listed, passage
 
 ESD, TVS, FUSE, MOSFET = "esd diode", "tvs diode", "fuse", "transistor"
 SCHOTTKY = "schottky diode"

@@ -19,7 +19,7 @@ from lumitip_fab.docs.spec_circuit import (
     input_rows,
     string_rows,
 )
-from lumitip_fab.docs.wiring import listed
+from lumitip_fab.text import listed
 
 
 def outside(design: Design) -> Iterator[Row]:

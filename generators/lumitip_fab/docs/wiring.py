@@ -10,7 +10,7 @@ from lumitip_fab.docs.diagram import diagram
 from lumitip_fab.docs.spec_circuit import pulled_up
 from lumitip_fab.docs.steps import WorkStep
 from lumitip_fab.pipeline.artefact import Artefact
-from lumitip_fab.text import as_written, passage
+from lumitip_fab.text import as_written, listed, passage
 
 _TEXTS = "docs/wiring.md"
 
@@ -139,11 +139,6 @@ def _tied(design: Design) -> str:
         thread_mm=THREAD_MM,
         loose=passage(_TEXTS, "loose").format(boards=listed(loose), held=held) if loose else "",
     )
-
-
-def listed(names: list[str]) -> str:
-    """Names as a sentence has them, such as `"a, b and c"`."""
-    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
 def _power(design: Design) -> str:

@@ -11,15 +11,14 @@ from lumitip_fab.boards.fab.order import (
     polarity_unknown,
     turned_by_assumption,
 )
-from lumitip_fab.boards.model import BoardModel, Placement
+from lumitip_fab.boards.fab.ways import OTHER, lying, range_of
+from lumitip_fab.boards.model import AT_CELLS, BoardModel, Placement
 from lumitip_fab.boards.placed import pad_at, placed_pads
 from lumitip_fab.design import Fab, Flexible, Led, Panel, Photodetector
 from lumitip_fab.design.boards import thickness_off_mm
 from lumitip_fab.text import passage
 
 STOP_FILE = "STOP_READ_FIRST.txt"
-_OTHER = {"anode": "cathode", "cathode": "anode", "collector": "emitter", "emitter": "collector"}
-_POLAR = {"led": "LED", "photodetector": "photodetector"}
 
 
 def stop_note(board: Placement) -> dict[str, bytes]:
@@ -27,9 +26,9 @@ def stop_note(board: Placement) -> dict[str, bytes]:
     not known; nothing where it is, and without cells."""
     if board.cells is None or not polarity_unknown(board):
         return {}
-    chip, part = board.cells.part, next(part for part in bought(board) if part.kind in _POLAR)
+    chip, parts = board.cells.part, [part for part in bought(board) if part.kind in AT_CELLS]
     text = passage(TEXTS, "stop").format(
-        refs=_refs(board, part.kind), part=part.part, chip=chip, other=_OTHER[chip.marked]
+        refs=range_of(parts), part=parts[0].part, chip=chip, other=OTHER[chip.marked]
     )
     return {STOP_FILE: text.encode()}
 
@@ -93,7 +92,8 @@ def assembly_note(board: Placement, fab: Fab, small: bool = False) -> bytes:
         "",
         *(_flexible(board.flexible, stiffener) if board.flexible else ()),
         *((passage(TEXTS, "small").format(least=fab.least_mm), "") if small else ()),
-        *((*_polarity(board, chip), *_others(board)) if chip else _behind(board)),
+        *lying(board),
+        *_behind(board),
         *_by_hand(board),
         *_assumed(board, fab),
         *_ordering(board, fab),
@@ -103,37 +103,12 @@ def assembly_note(board: Placement, fab: Fab, small: bool = False) -> bytes:
     return "".join(f"{line}\n" for line in lines).encode()
 
 
-def _polarity(board: Placement, chip: Led | Photodetector) -> Iterator[str]:
-    part = next(part for part in bought(board) if part.kind in _POLAR)
-    for name in ("pads", chip.mark_confidence if chip.mark_is_known else "assumed"):
-        yield passage(TEXTS, name).format(
-            refs=_refs(board, part.kind),
-            part=part.part,
-            kind=_POLAR[part.kind],
-            chip=chip,
-            other=_OTHER[chip.marked],
-        )
-    yield ""
-
-
 def _flexible(flexible: Flexible, outline: str) -> Iterator[str]:
     """Order note of a flexible board, and the file with the stiffener's outline."""
     total_mm = flexible.core_mm + 2 * (flexible.copper_mm + flexible.coverlay_mm)
     yield passage(TEXTS, "flexible").format(
         flexible=flexible, total_mm=total_mm, stiff=flexible.stiffener, outline=outline
     )
-    yield ""
-
-
-def _others(board: Placement) -> Iterator[str]:
-    kinds = {part.kind for part in bought(board)}
-    if "multiplexer" in kinds:
-        yield f"{_refs(board, 'multiplexer')}: lead 1 is at the dot, on the notch's side."
-    if "switch" in kinds:
-        yield f"{_refs(board, 'switch')}: lead 1 is at the dot."
-    symmetric = ("resistor", "resistor array", "capacitor")
-    plain = [_refs(board, kind) for kind in symmetric if kind in kinds]
-    yield f"{' and '.join(plain)}: either way round."
     yield ""
 
 
@@ -182,14 +157,9 @@ def _ordering(board: Placement, fab: Fab) -> Iterator[str]:
 
 def _places(board: Placement, chip: Led | Photodetector) -> Iterator[str]:
     for part in bought(board):
-        if part.kind in _POLAR:
+        if part.kind in AT_CELLS:
             one, other = (pad_at(part, number) for number in ("1", "2"))
             yield (
                 f"{part.ref}  {chip.marked} {one[0]:.3f} {one[1]:.3f}  "
-                f"{_OTHER[chip.marked]} {other[0]:.3f} {other[1]:.3f}"
+                f"{OTHER[chip.marked]} {other[0]:.3f} {other[1]:.3f}"
             )
-
-
-def _refs(board: Placement, kind: str) -> str:
-    refs = [part.ref for part in bought(board) if part.kind == kind]
-    return refs[0] if len(refs) == 1 else f"{refs[0]} to {refs[-1]}"

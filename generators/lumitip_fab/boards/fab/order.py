@@ -29,7 +29,7 @@ def placement_list(board: Placement, fab: Fab) -> bytes:
 
 def bought(board: Placement) -> list[Component]:
     """The parts that somebody solders on: all but bare copper, in order of reference."""
-    return sorted((p for p in board.components if p.part), key=lambda p: _natural(p.ref))
+    return sorted((p for p in board.components if p.part), key=lambda p: natural(p.ref))
 
 
 def assembled(board: Placement) -> list[Component]:
@@ -123,8 +123,8 @@ def _table(columns: Iterable[tuple[str, str]], rows: Iterable[Row]) -> bytes:
     return file.getvalue().encode()
 
 
-def _natural(ref: str) -> tuple[str, int, int]:
-    """Letters, number and, in a panel, copy."""
+def natural(ref: str) -> tuple[str, int, int]:
+    """Letters and number of a reference and, in a panel, its copy."""
     found = re.fullmatch(r"(\D*)(\d*)(?:_(\d+))?", ref)
     letters, number, copy = found.groups()  # type: ignore[union-attr]
     return letters, int(number or 0), int(copy or 0)

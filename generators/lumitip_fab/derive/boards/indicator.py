@@ -10,7 +10,7 @@
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from lumitip_fab.catalogue.controllers import OPEN
 from lumitip_fab.catalogue.electronics import Indicator as Part
@@ -136,8 +136,9 @@ def _parts(
 ) -> tuple[Component, ...]:
     """LED and resistor, each with its place and its angle."""
     led, series = lit.refs
+    made = chip(led, "indicator", lit.led, lit.part, (GROUND, NET), *led_at)
     return (
-        chip(led, "indicator", lit.led, lit.part, (GROUND, NET), *led_at),
+        replace(made, mark_confidence=lit.part.mark_confidence),
         resistor(series, _ohm(lit), lit.package, (supply, NET), *resistor_at),
     )
 

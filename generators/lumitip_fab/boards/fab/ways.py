@@ -1,0 +1,75 @@
+"""How the parts of a board lie: the terminal at pad 1, and what may be turned."""
+
+from collections.abc import Iterable, Iterator
+from itertools import groupby
+
+from lumitip_fab.boards.fab.order import TEXTS, assembled, natural
+from lumitip_fab.boards.model import AT_CELLS, Placement
+from lumitip_fab.design import Component
+from lumitip_fab.text import listed, passage
+
+OTHER = {"anode": "cathode", "cathode": "anode", "collector": "emitter", "emitter": "collector"}
+_KNOWN = ("datasheet", "measured")
+_DIODES = ("tvs diode", "esd diode", "schottky diode", "indicator")
+_LIES = {
+    "multiplexer": "lead 1 is at the dot, on the notch's side",
+    **dict.fromkeys(("switch", "transistor", "current source"), "lead 1 is at the dot"),
+    "regulator": "lead 1 is at the dot",
+    "module": "pad 1 is at the dot",
+    "header": "contact 1 is at the bar",
+}
+"""By the kind of part; diodes aside, both ends of every other kind are alike."""
+_ALIKE = "either way round"
+
+
+def lying(board: Placement) -> Iterator[str]:
+    """Lines on all parts that the PCB fab mounts."""
+    of_cells: list[Component] = []
+    rest: list[Component] = []
+    for part in assembled(board):
+        (of_cells if board.cells and part.kind in AT_CELLS else rest).append(part)
+    if board.cells:
+        chip = board.cells.part
+        yield from _marked(of_cells, chip.marked, chip.mark_confidence)
+    found: dict[str, list[str]] = {}
+    for (_, _, lies), parts in groupby(rest, key=_kind):
+        run = list(parts)
+        if lies:
+            found.setdefault(lies, []).append(range_of(run))
+        else:
+            yield from _marked(run, "cathode", run[0].mark_confidence)
+    yield ""
+    for lies in sorted(found, key=lambda lies: (lies == _ALIKE, lies)):
+        yield f"{listed(found[lies])}: {lies}."
+    yield ""
+
+
+def range_of(parts: Iterable[Component]) -> str:
+    """First and last reference of parts that follow one another."""
+    refs = [part.ref for part in parts]
+    return refs[0] if len(refs) == 1 else f"{refs[0]} to {refs[-1]}"
+
+
+def _kind(part: Component) -> tuple[str, str, str]:
+    """Letters of its reference, a diode's order number, and how it lies, which of a diode its mark
+    says."""
+    letters, *_ = natural(part.ref)
+    diode = part.kind in _DIODES
+    return letters, part.part if diode else "", "" if diode else _LIES.get(part.kind, _ALIKE)
+
+
+def _marked(parts: list[Component], marked: str, confidence: str) -> Iterator[str]:
+    """Which pad is which terminal, and how far the mark on the part itself is known; nothing of the
+    latter where a band round the body shows it."""
+    names = ["pads"]
+    if confidence:
+        names.append(confidence if confidence in _KNOWN else "assumed")
+    for name in names:
+        yield passage(TEXTS, name).format(
+            refs=range_of(parts),
+            part=parts[0].part,
+            maker=parts[0].manufacturer,
+            marked=marked,
+            other=OTHER[marked],
+            confidence=confidence,
+        )

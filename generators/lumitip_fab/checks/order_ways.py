@@ -1,0 +1,86 @@
+"""How the parts of a board lie, by its file: the lines that an assembly note must have on it."""
+
+import re
+from collections.abc import Iterator
+from itertools import groupby
+
+from lumitip_fab.checks.board_read import ReadBoard
+from lumitip_fab.checks.readers.kicad_board import Part
+from lumitip_fab.text import listed, passage
+
+TEXTS = "boards/fab/notes.txt"
+"""Wording that both notes share with whoever writes them; the figures in it come from the board."""
+_KNOWN = ("datasheet", "measured")
+_OTHER = {"anode": "cathode", "cathode": "anode", "collector": "emitter", "emitter": "collector"}
+_DIODES = ("DIO", "LED")
+_ALIKE = "either way round"
+_LIES = {
+    "SOP": "lead 1 is at the dot, on the notch's side",
+    "SOT": "lead 1 is at the dot",
+    "Module": "pad 1 is at the dot",
+    "Header": "contact 1 is at the bar",
+    **dict.fromkeys(("RESC", "CAPC", "INDC", "FUSC", "XTAL", "PinSocket"), _ALIKE),
+}
+"""By the beginning of a land pattern's name."""
+
+
+def lying(read: ReadBoard) -> Iterator[str]:
+    """The lines on polarity and on leads, of all parts that a fab mounts."""
+    mounted = read.assembled()
+    parts = sorted((part for part in read.board.parts if part.ref in mounted), key=_place)
+    at_cells = [part for part in parts if _at_cell(read, part)]
+    if read.finger:
+        chip = read.design.packages.at_cells(read.finger)
+        yield from _marked(read, at_cells, chip.marked, chip.mark_confidence)
+    found: dict[str, list[str]] = {}
+    confidence = {part.ref: part.mark_confidence for part in read.components}
+    rest = (part for part in parts if part not in at_cells)
+    for (_, _, lies), same in groupby(rest, key=lambda part: _kind(read, part)):
+        run = list(same)
+        if lies:
+            found.setdefault(lies, []).append(_range(run))
+        else:
+            yield from _marked(read, run, "cathode", confidence.get(run[0].ref, ""))
+    yield from (f"{listed(runs)}: {lies}." for lies, runs in found.items())
+
+
+def _at_cell(read: ReadBoard, part: Part) -> bool:
+    if not read.finger:
+        return False
+    return bool(re.fullmatch(rf"{read.finger.cells_hold.letter}\d+(_\d+)?", part.ref)) and (
+        read.ordered(part.ref)[0] == read.design.packages.at_cells(read.finger).order_number
+    )
+
+
+def _place(part: Part) -> tuple[str, int, int]:
+    """Letters, number and copy of a reference."""
+    letters, number, copy = re.findall(r"^([A-Z]+)(\d+)(?:_(\d+))?$", part.ref)[0]
+    return letters, int(number), int(copy or 0)
+
+
+def _kind(read: ReadBoard, part: Part) -> tuple[str, str, str]:
+    """What is one line, or one range of a line: letters, a diode's order number, how it lies."""
+    letters, *_ = _place(part)
+    if part.footprint.startswith(_DIODES):
+        return letters, read.ordered(part.ref)[0], ""
+    fits = [lies for start, lies in _LIES.items() if part.footprint.startswith(start)]
+    return letters, "", fits[0] if fits else f"unknown: {part.footprint}"
+
+
+def _marked(read: ReadBoard, parts: list[Part], marked: str, confidence: str) -> Iterator[str]:
+    """The lines on a part with a mark: its pads, and how far the mark is known."""
+    second = confidence if confidence in _KNOWN else "assumed"
+    for name in ("pads", second) if confidence else ("pads",):
+        yield passage(TEXTS, name).format(
+            refs=_range(parts),
+            part=read.ordered(parts[0].ref)[0],
+            maker=dict(parts[0].fields).get("Manufacturer", ""),
+            marked=marked,
+            other=_OTHER[marked],
+            confidence=confidence,
+        )
+
+
+def _range(parts: list[Part]) -> str:
+    """First and last reference."""
+    return " to ".join(dict.fromkeys((parts[0].ref, parts[-1].ref)))
