@@ -8,6 +8,8 @@ from pydantic import Field, model_validator
 from lumitip_fab.catalogue.electronics import Chip
 from lumitip_fab.catalogue.record import Voltages
 
+_RATED_AT_C = 25.0
+
 
 class TvsDiode(Chip):
     """A unidirectional TVS diode: terminal 1 is its cathode."""
@@ -15,11 +17,18 @@ class TvsDiode(Chip):
     standoff_v: float = Field(gt=0, le=1000)
     """Voltage up to which it carries no more than a leakage current."""
     breakdown_v: Voltages
-    """Least and greatest breakdown voltage."""
+    """Least and greatest breakdown voltage at 25 °C."""
+    breakdown_per_k: float = Field(default=1e-3, ge=0, le=5e-3)
+    """Rise of the breakdown voltage for each kelvin, as a fraction of it. The default is assumed:
+    the most that silicon above 10 V has, by figures of several makers' series."""
     clamping_v: float = Field(gt=0, le=1000)
     """Largest voltage at `pulse_a`."""
     pulse_a: float = Field(gt=0, le=1e4)
     """Largest peak current of a pulse of 10/1000 µs."""
+
+    def conducts_v(self, at_c: float) -> float:
+        """Least voltage at which it conducts at a temperature (°C)."""
+        return self.breakdown_v[0] * (1 + self.breakdown_per_k * (at_c - _RATED_AT_C))
 
     @property
     def dynamic_ohm(self) -> float:

@@ -158,7 +158,10 @@ class PlugIn:
     capacitor_tolerance: float
     """Fraction by which it may be off, either way."""
     breakdown_v: tuple[float, float]
-    """Least and greatest breakdown voltage of the TVS diode."""
+    """Least and greatest breakdown voltage of the TVS diode at 25 °C."""
+    conducts_v: float
+    """Least voltage at which it conducts, at `coldest_c`."""
+    coldest_c: float
     tvs_ohm: float
     """Dynamic resistance of the TVS diode."""
     clamping_v: float

@@ -166,12 +166,21 @@ def input_rows(design: Design) -> Iterator[Row]:
     if design.flanges:
         for plug_in in (each for each in design.electrical.plug_ins if each.capacitor_uf):
             yield from _plugged_in(plug_in)
-        return
-    if not design.entered:
+    elif not design.entered:
         yield from rows_of("unprotected_input", supply_v=design.wiring.supply_v)
-    for board, plug_in in zip(design.entered, design.electrical.plug_ins, strict=True):
-        values = {device.ref: device.value for device in board.components}
-        yield from rows_of("input", board=board, plug_in=plug_in, **values)
+    else:
+        for board, plug_in in zip(design.entered, design.electrical.plug_ins, strict=True):
+            values = {device.ref: device.value for device in board.components}
+            yield from rows_of("input", board=board, plug_in=plug_in, **values)
+    for plug_in in design.electrical.plug_ins:
+        yield from _tvs(plug_in, design.wiring.supply_v)
+
+
+def _tvs(plug_in: PlugIn, supply_v: float) -> Iterator[Row]:
+    """From where on the TVS diode may conduct."""
+    over = {"over_percent": plug_in.conducts_v, "percent": plug_in.supply_v}
+    percent = {name: 100 * (volts / supply_v - 1) for name, volts in over.items()}
+    return rows_of("tvs", plug_in=plug_in, supply_v=supply_v, **percent)
 
 
 def _plugged_in(plug_in: PlugIn) -> Iterator[Row]:

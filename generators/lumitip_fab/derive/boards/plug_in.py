@@ -23,6 +23,7 @@ from lumitip_fab.derive.boards.supply_input import (
     is_regulated,
 )
 from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.wiring.protection import holds
 from lumitip_fab.derive.wiring.ratings import (
     MOST_RESISTOR_LOAD,
     RESISTOR_TOLERANCE,
@@ -30,6 +31,7 @@ from lumitip_fab.derive.wiring.ratings import (
     sold_from,
     sold_ohm,
 )
+from lumitip_fab.derive.wiring.sources import COLDEST_C
 from lumitip_fab.design.electrical import PlugIn
 
 CABLE_UH = (0.5, 2.0)
@@ -72,6 +74,8 @@ def derive_plug_in(config: Input, faults: Diagnostics) -> tuple[PlugIn, ...]:
             left_at_v=p.supply.voltage_v,
             capacitor_tolerance=CAPACITANCE_TOLERANCE,
             breakdown_v=parts.tvs.breakdown_v,
+            conducts_v=parts.tvs.conducts_v(COLDEST_C),
+            coldest_c=COLDEST_C,
             tvs_ohm=parts.tvs.dynamic_ohm,
             clamping_v=parts.tvs.clamping_v,
             gate_v=parts.transistor.gate_v,
@@ -134,14 +138,14 @@ def _refuse_tvs(config: Input, faults: Diagnostics) -> None:
     """Refuse a TVS diode that conducts at the supply, or only above what the parts bear."""
     p, parts = config.parameters, config.parts.flange
     tvs, volts = parts.tvs, p.supply.voltage_v
-    high_v = volts * (1 + SUPPLY_TOLERANCE)
     faults.unless(
-        tvs.standoff_v >= volts and tvs.breakdown_v[0] >= high_v,
+        holds(tvs, volts),
         "tvs_conducts",
         tvs=tvs,
-        least=tvs.breakdown_v[0],
+        least=tvs.conducts_v(COLDEST_C),
+        coldest=COLDEST_C,
         volts=volts,
-        high_v=high_v,
+        high_v=volts * (1 + SUPPLY_TOLERANCE),
     )
     bears_v = min(parts.transistor.rated_v, _limit_v(config))
     faults.unless(

@@ -54,10 +54,9 @@ def input_board(config: Input) -> str | None:
 
 def _fit_the_supply(config: Input) -> bool:
     """Whether fuse, MOSFET and TVS diode are made for the supply."""
-    volts, tvs = config.parameters.supply.voltage_v, config.parts.flange.tvs
+    volts = config.parameters.supply.voltage_v
     least, most = input_range_v(config)
-    high_v = volts * (1 + ratings.SUPPLY_TOLERANCE)
-    return least <= volts <= most and tvs.standoff_v >= volts and tvs.breakdown_v[0] >= high_v
+    return least <= volts <= most and protection.holds(config.parts.flange.tvs, volts)
 
 
 def input_nets(config: Input) -> tuple[str, str]:

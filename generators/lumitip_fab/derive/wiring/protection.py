@@ -13,7 +13,7 @@ supply, and name no current; they name a discharge of the human-body model that 
 
 import math
 
-from lumitip_fab.catalogue.clamps import EsdDiode
+from lumitip_fab.catalogue.clamps import EsdDiode, TvsDiode
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.connectors import CONTROLLER, REGULATED, SWITCH
 from lumitip_fab.derive.diagnostics import Diagnostics
@@ -23,6 +23,7 @@ from lumitip_fab.derive.wiring.ratings import (
     sold_from,
     sold_ohm,
 )
+from lumitip_fab.derive.wiring.sources import COLDEST_C
 from lumitip_fab.derive.wiring.wiring import Muxing
 from lumitip_fab.design.electrical import Protection
 
@@ -78,14 +79,16 @@ def clamped(config: Input, muxing: Muxing) -> tuple[str, ...]:
     on_wires = {CONTROLLER: controller.supply_v}
     if controller.module is None:
         on_wires[REGULATED] = config.parts.flange.regulator.output_v
-    fitting = (net for net, volts in on_wires.items() if _holds(diode, volts))
+    fitting = (net for net, volts in on_wires.items() if holds(diode, volts))
     direct = MODULE_SIGNALS if controller.module is not None else ()
     return (*lines(config, muxing), *fitting, *direct)
 
 
-def _holds(diode: EsdDiode, volts: float) -> bool:
-    """Whether a diode does not conduct at a supply."""
-    return diode.standoff_v >= volts and diode.breakdown_v[0] >= volts * (1 + SUPPLY_TOLERANCE)
+def holds(diode: TvsDiode, volts: float) -> bool:
+    """Whether a diode does not conduct at a supply, at the coldest either: its breakdown voltage
+    falls with its temperature."""
+    most_v = volts * (1 + SUPPLY_TOLERANCE)
+    return diode.standoff_v >= volts and diode.conducts_v(COLDEST_C) >= most_v
 
 
 def derive_protection(config: Input, muxing: Muxing, faults: Diagnostics) -> Protection | None:
@@ -135,7 +138,7 @@ def _refuse(
         config.parts.controller.board,
     )
     faults.unless(
-        _holds(diode, controller.supply_v),
+        holds(diode, controller.supply_v),
         "diode_conducts",
         diode=diode,
         supply_v=controller.supply_v,
