@@ -135,12 +135,13 @@ def _panels(design: Design) -> str:
             for panel in design.panels
         ]
         return _text("panels", listed="\n".join(lines))
-    lines = [
-        f"- smaller than {small.least_mm[0]:g} x {small.least_mm[1]:g} mm, the least of "
-        f"{listed([*small.fabs])}: {listed([*small.boards])}"
-        for small in too_small(design)
+    every = len(design.fingers) + len(design.auxiliary_boards)
+    small = [
+        f"{'all boards' if len(found.boards) == every else listed([*found.boards])} at "
+        f"{listed([*found.fabs])} (under {found.least_mm[0]:g} x {found.least_mm[1]:g} mm)"
+        for found in too_small(design)
     ]
-    return _text("small", listed="\n".join(lines)) if lines else ""
+    return _text("small", listed="; ".join(small)) if small else ""
 
 
 def _reflowed(design: Design) -> str:
@@ -164,9 +165,7 @@ def polarity_test(packages: Packages, fingers: tuple[Finger, ...]) -> str:
     parts = Counter(part.kind for finger in fingers for part in finger.parts)
     counted = f"{parts['led']} LEDs, {parts['photodetector']} photodetectors"
     tests_text = "".join(tests)
-    stop = passage("boards/fab/notes.txt", "stop_row")
-    values = {"tests": tests_text, "counted": counted, "tested": TESTED, "stop_row": stop}
-    return _text("polarity", **values) if tests else ""
+    return _text("polarity", tests=tests_text, counted=counted, tested=TESTED) if tests else ""
 
 
 def _text(name: str, /, **values: object) -> str:
