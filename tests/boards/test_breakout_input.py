@@ -72,7 +72,7 @@ def fuse_missing(text: str) -> str:
 
 def supply_past_the_fuse(text: str) -> str:
     """The wires' pads in another order: the supply is on the pad of the 5 V."""
-    return swapped_pads(text, "J7", "2", "3")
+    return swapped_pads(text, "J7", "1", "3")
 
 
 def resistor_of_the_gate_missing(text: str) -> str:
