@@ -112,14 +112,11 @@ class Layout:
     @property
     def hole_mm(self) -> Floats:
         """Aperture of each cell in both masks, shape `(cells,)` (mm)."""
-        sizes: Floats = self.hole_share * self.optics.hole_mm
-        return sizes
+        return np.asarray(self.hole_share * self.optics.hole_mm)
 
     def __repr__(self) -> str:
-        return (
-            f"<Layout of {len(self)} cells, pitch {self.pitch_mm:g} mm, "
-            f"design {self.design_hash[:16]}>"
-        )
+        of = f"{len(self)} cells, pitch {self.pitch_mm:g} mm, design {self.design_hash[:16]}"
+        return f"<Layout of {of}>"
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Layout) and self.design_hash == other.design_hash
@@ -287,8 +284,7 @@ def _hole_share(record: Mapping[str, Any], optics: Optics, cells: int) -> Floats
     sizes = _numbers(record, "hole_mm", cells)
     if sizes.min() <= 0.0 or optics.hole_mm <= 0.0:
         raise LayoutError("hole_mm: sizes above 0 are needed, in optics too")
-    shares: Floats = sizes / optics.hole_mm
-    return shares
+    return np.asarray(sizes / optics.hole_mm)
 
 
 def _optics(record: Mapping[str, Any]) -> Optics:

@@ -180,8 +180,8 @@ def test_a_damage_of_a_table(name: str, damaged_boards: Path) -> None:
     order = folder_of(damaged_boards)
     rezip(order / f"{SECOND}_receiver.zip", lambda files: edit(files, table, pattern, put))
     with zipfile.ZipFile(order / f"{SECOND}_receiver.zip") as package:
-        told = package.read(f"receiver_{table}")
-    (order / f"{SECOND}_receiver_{table}").write_bytes(told)
+        changed = package.read(f"receiver_{table}")
+    (order / f"{SECOND}_receiver_{table}").write_bytes(changed)
     assert failing(damaged_boards, "orders", "receiver") == wanted
 
 
@@ -192,8 +192,8 @@ def test_a_placement_list_without_a_stop_line(damaged_boards: Path) -> None:
         lambda files: edit(files, PLACES, rb"(Q5,[^,(]*) \(STOP[^)]*\)", rb"\1"),
     )
     with zipfile.ZipFile(order / f"{FIRST}_receiver.zip") as package:
-        told = package.read(f"receiver_{PLACES}")
-    (order / f"{FIRST}_receiver_{PLACES}").write_bytes(told)
+        unstopped = package.read(f"receiver_{PLACES}")
+    (order / f"{FIRST}_receiver_{PLACES}").write_bytes(unstopped)
     assert failing(damaged_boards, "orders", "receiver") == {"placed"}
 
 

@@ -34,6 +34,12 @@ def test_boards_are_placed_and_routed_by_them(designs: Designs) -> None:
             assert kind.clearance_mm == COMMON_MM["copper_gap_mm"]
 
 
+def test_supplies_are_no_narrower_than_signals(designs: Designs) -> None:
+    usual = designs("small")
+    fine = replace(usual, rules=replace(usual.rules, track_mm=0.15, supply_track_mm=0.15))
+    assert rules_of(fine, "flange").supply_track_mm == COMMON_MM["track_mm"]
+
+
 def test_coarser_rules_of_a_file_hold_on_every_board(designs: Designs) -> None:
     usual = designs("small")
     coarse = replace(usual, rules=replace(usual.rules, track_mm=0.3, via_mm=0.8))

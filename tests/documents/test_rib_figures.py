@@ -23,6 +23,8 @@ RIB_MM = 2.4
 """Width: six printed lines."""
 BEFORE_MM = 15.0
 """How far the ribs go on along the ramp."""
+HIGH_MM, LOW_MM = 8.0, 4.0
+"""Height of ribs in place of the flare, and beside it."""
 
 
 def _finger(design_dir: Path, name: str) -> tuple[Input, Body]:
@@ -33,8 +35,8 @@ def _finger(design_dir: Path, name: str) -> tuple[Input, Body]:
 def _borne_n(
     config: Input, body: Body, monkeypatch: pytest.MonkeyPatch, rib_mm: float = 0.0
 ) -> float:
-    """What a finger bears with two ribs on its back, at the edges of the block's width, from the
-    ramp to the end of the flare."""
+    """Force that a finger bears with two ribs on its back, at the edges of the block's width, from
+    the ramp to the end of the flare."""
     plain = strength._held
 
     def ribbed(body: Body, at: strength._Planes) -> tuple[list[Block], list[Block]]:
@@ -61,8 +63,8 @@ def test_ribs_beside_the_flare_let_a_finger_bear_no_more(
 ) -> None:
     config, body = _finger(design_dir, name)
     plain = _borne_n(config, body, monkeypatch)
-    assert _borne_n(config, body, monkeypatch, 4.0) == pytest.approx(plain, rel=1e-3)
-    assert _borne_n(config, _unflared(body), monkeypatch, 8.0) < 0.8 * plain
+    assert _borne_n(config, body, monkeypatch, LOW_MM) == pytest.approx(plain, rel=1e-3)
+    assert _borne_n(config, _unflared(body), monkeypatch, HIGH_MM) < 0.8 * plain
     assert _borne_n(config, _unflared(body), monkeypatch) < 0.5 * plain
 
 
@@ -71,11 +73,13 @@ def test_the_page_has_the_figures(design_dir: Path, monkeypatch: pytest.MonkeyPa
     bare = _unflared(body)
     found = [
         _borne_n(config, bare, monkeypatch),
-        _borne_n(config, bare, monkeypatch, 8.0),
+        _borne_n(config, bare, monkeypatch, HIGH_MM),
         _borne_n(config, body, monkeypatch),
-        _borne_n(config, body, monkeypatch, 4.0),
+        _borne_n(config, body, monkeypatch, LOW_MM),
     ]
     text = " ".join(PAGE.read_text(encoding="utf-8").split())
-    sentence = re.search(r"Without flare .*? in the block", text)
+    sentence = re.search(r"Without flare .*? low on the ramp", text)
     assert sentence, "the page says why there are no ribs"
     assert [int(n) for n in re.findall(r"(\d+) N", sentence[0])] == [round(n) for n in found]
+    sizes_mm = [float(n) for n in re.findall(r"([\d.]+) mm", sentence[0])]
+    assert sizes_mm == [RIB_MM, HIGH_MM, BEFORE_MM, LOW_MM]

@@ -102,7 +102,7 @@ SMALL = "emitter, receiver, breakout and flange"
 
 
 def said(design: Design) -> dict[str, list[str]]:
-    """What spec and manual say of boards that are too small for a fab."""
+    """Lines of spec and manual on boards that are too small for a fab."""
     ordered = ordering(design, Files(Path(), {}))
     return {
         "spec": [
@@ -119,8 +119,8 @@ def test_spec_and_manual_name_the_boards_that_a_fab_does_not_assemble(
 ) -> None:
     design = derive(vary(inputs["published"], {"board.panel": "none"}))
     (line,) = said(design)["manual"]
-    assert "all boards at jlcpcb (under 70 x 70 mm);" in line
-    assert "all boards at generic and pcbway (under 50 x 50 mm)." in line
+    assert "all boards at jlcpcb (at least 70 x 70 mm);" in line
+    assert "all boards at generic and pcbway (at least 50 x 50 mm)." in line
     rows = said(design)["spec"]
     assert [row.partition(", bare")[0].partition("; bare")[0] for row in rows] == [
         f"least size for assembly, {fabs}: {least}; by parts/fabs.toml; smaller: {SMALL}. "
@@ -138,7 +138,7 @@ def test_a_board_with_a_panel_or_of_the_least_size_is_not_named(
     assert said(derive(with_limits(config))) == nothing
     flexible = derive(inputs["flex"])
     (line,) = said(flexible)["manual"]
-    assert "breakout and flange at jlcpcb (under 70 x 70 mm)" in line
+    assert "breakout and flange at jlcpcb (at least 70 x 70 mm)" in line
 
 
 @pytest.mark.slow_cases

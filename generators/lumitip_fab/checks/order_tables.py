@@ -1,7 +1,6 @@
 """The tables of a zip, bill of materials and placement list, against the parts on the board."""
 
 import math
-import re
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,6 +9,7 @@ import numpy as np
 
 from lumitip_fab.checks.board_read import ReadBoard
 from lumitip_fab.checks.order_layers import PLACE_MM
+from lumitip_fab.checks.order_ways import at_cell
 from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.result import Measurement, count
@@ -88,7 +88,7 @@ def _value(read: ReadBoard, part: Part) -> str:
     known."""
     if read.finger is None or read.design.packages.at_cells(read.finger).mark_is_known:
         return part.value
-    if not re.fullmatch(rf"{read.finger.cells_hold.letter}\d+(_\d+)?", part.ref):
+    if not at_cell(read, part):
         return part.value
     return f"{part.value} ({passage('boards/fab/notes.txt', 'stop_row')})"
 

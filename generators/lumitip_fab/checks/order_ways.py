@@ -28,7 +28,7 @@ def lying(read: ReadBoard) -> Iterator[str]:
     """The lines on polarity and on leads, of all parts that a fab mounts."""
     mounted = read.assembled()
     parts = sorted((part for part in read.board.parts if part.ref in mounted), key=_place)
-    at_cells = [part for part in parts if _at_cell(read, part)]
+    at_cells = [part for part in parts if at_cell(read, part)]
     if read.finger:
         chip = read.design.packages.at_cells(read.finger)
         yield from _marked(read, at_cells, chip.marked, chip.mark_confidence)
@@ -44,7 +44,8 @@ def lying(read: ReadBoard) -> Iterator[str]:
     yield from (f"{listed(runs)}: {lies}." for lies, runs in found.items())
 
 
-def _at_cell(read: ReadBoard, part: Part) -> bool:
+def at_cell(read: ReadBoard, part: Part) -> bool:
+    """Whether a part is an LED or a photodetector at a cell."""
     if not read.finger:
         return False
     return bool(re.fullmatch(rf"{read.finger.cells_hold.letter}\d+(_\d+)?", part.ref)) and (
@@ -59,7 +60,8 @@ def _place(part: Part) -> tuple[str, int, int]:
 
 
 def _kind(read: ReadBoard, part: Part) -> tuple[str, str, str]:
-    """What is one line, or one range of a line: letters, a diode's order number, how it lies."""
+    """Parts of one line, or of one range of it, share letters, a diode's order number, and how they
+    lie."""
     letters, *_ = _place(part)
     if part.footprint.startswith(_DIODES):
         return letters, read.ordered(part.ref)[0], ""

@@ -97,15 +97,15 @@ class Board(Strict):
     channel_mm: float = Field(ge=0.5, le=20)
     """Routing channel after the cells and after each row of multiplexers (mm)."""
     track_mm: float = Field(ge=0.1, le=1)
-    """Width of signal tracks (mm)."""
+    """Width of signal tracks (mm); outside the fingers 0.2 at least."""
     supply_track_mm: float = Field(ge=0.1, le=3)
     """Width of the tracks of a supply (mm)."""
     copper_gap_mm: float = Field(ge=0.1, le=1)
-    """Smallest gap between copper of different nets (mm)."""
+    """Smallest gap between copper of different nets (mm); outside the fingers 0.2 at least."""
     via_mm: float = Field(ge=0.3, le=2)
-    """Diameter of vias (mm)."""
+    """Diameter of vias (mm); outside the fingers 0.6 at least."""
     via_drill_mm: float = Field(ge=0.15, le=1)
-    """Hole of vias (mm)."""
+    """Hole of vias (mm); outside the fingers 0.3 at least."""
     edge_gap_mm: float = Field(ge=0.2, le=2)
     """Copper to the edge of every board (mm)."""
     connector_side: Literal["gripper"]

@@ -21,4 +21,5 @@ def rules_of(design: Design, name: str) -> Rules:
     if any(finger.name == board for finger in design.fingers):
         return design.rules
     coarser = {of: max(getattr(design.rules, of), least) for of, least in COMMON_MM.items()}
-    return replace(design.rules, **coarser)
+    supply_mm = max(design.rules.supply_track_mm, coarser["track_mm"])
+    return replace(design.rules, **coarser, supply_track_mm=supply_mm)

@@ -138,7 +138,7 @@ def _panels(design: Design) -> str:
     every = len(design.fingers) + len(design.auxiliary_boards)
     small = [
         f"{'all boards' if len(found.boards) == every else listed([*found.boards])} at "
-        f"{listed([*found.fabs])} (under {found.least_mm[0]:g} x {found.least_mm[1]:g} mm)"
+        f"{listed([*found.fabs])} (at least {found.least_mm[0]:g} x {found.least_mm[1]:g} mm)"
         for found in too_small(design)
     ]
     return _text("small", listed="; ".join(small)) if small else ""

@@ -1,5 +1,6 @@
 """Electrical figures of a design beside the published ones."""
 
+import math
 from collections.abc import Iterator
 
 from lumitip_fab.design import Design, Wiring
@@ -180,7 +181,8 @@ def _tvs(plug_in: PlugIn, supply_v: float) -> Iterator[Row]:
     """From where on the TVS diode may conduct."""
     over = {"over_percent": plug_in.conducts_v, "percent": plug_in.supply_v}
     percent = {name: 100 * (volts / supply_v - 1) for name, volts in over.items()}
-    return rows_of("tvs", plug_in=plug_in, supply_v=supply_v, **percent)
+    conducts_v = math.floor(10 * plug_in.conducts_v) / 10
+    return rows_of("tvs", plug_in=plug_in, conducts_v=conducts_v, supply_v=supply_v, **percent)
 
 
 def _plugged_in(plug_in: PlugIn) -> Iterator[Row]:

@@ -50,7 +50,7 @@ def svg_drawing(artwork: Artwork, mask: Mask, title: Title, words: bool = True) 
         cut=_d((artwork.cut,), shift),
         folds=_d(folds, shift),
         registration="\n".join(_registration(p, shift) for p in mask.registration),
-        name=name * words,
+        name=name if words else "",
         labels="".join(f"\n{label}" for label in labels),
     )
     return drawing.encode()

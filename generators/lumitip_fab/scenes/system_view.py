@@ -198,7 +198,7 @@ def _label(
     sheet.words_scale *= TITLE_SHARE
     start = "robot's tool flange" if flanges else "gripper"
     sheet.words(x_low - words_mm, top, f"From the {start} to the fingers", "title", "start")
-    sheet.cover(x_low - words_mm, top + 4 * sheet.words_scale)
+    sheet.cover(x_low - words_mm, top + 5 * sheet.words_scale)
     sheet.cover(x_low - words_mm, low)
     sheet.cover(x_high + words_mm + LABEL_MM, top)
 

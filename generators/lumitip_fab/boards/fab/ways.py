@@ -11,15 +11,17 @@ from lumitip_fab.text import listed, passage
 OTHER = {"anode": "cathode", "cathode": "anode", "collector": "emitter", "emitter": "collector"}
 _KNOWN = ("datasheet", "measured")
 _DIODES = ("tvs diode", "esd diode", "schottky diode", "indicator")
+_ALIKE = "either way round"
 _LIES = {
     "multiplexer": "lead 1 is at the dot, on the notch's side",
     **dict.fromkeys(("switch", "transistor", "current source"), "lead 1 is at the dot"),
     "regulator": "lead 1 is at the dot",
     "module": "pad 1 is at the dot",
     "header": "contact 1 is at the bar",
+    **dict.fromkeys(("resistor", "resistor array", "capacitor", "inductor"), _ALIKE),
+    **dict.fromkeys(("fuse", "crystal", "socket"), _ALIKE),
 }
-"""By the kind of part; diodes aside, both ends of every other kind are alike."""
-_ALIKE = "either way round"
+"""By the kind of part: every kind but diodes, whose lines have their own words."""
 
 
 def lying(board: Placement) -> Iterator[str]:
@@ -55,7 +57,7 @@ def _kind(part: Component) -> tuple[str, str, str]:
     says."""
     letters, *_ = natural(part.ref)
     diode = part.kind in _DIODES
-    return letters, part.part if diode else "", "" if diode else _LIES.get(part.kind, _ALIKE)
+    return letters, part.part if diode else "", "" if diode else _LIES[part.kind]
 
 
 def _marked(parts: list[Component], marked: str, confidence: str) -> Iterator[str]:

@@ -141,7 +141,10 @@ def _refuse(
         holds(diode, controller.supply_v),
         "diode_conducts",
         diode=diode,
+        least=diode.conducts_v(COLDEST_C),
+        coldest=COLDEST_C,
         supply_v=controller.supply_v,
+        high_v=controller.supply_v * (1 + SUPPLY_TOLERANCE),
     )
     sold = sold_ohm(p.series_ohm)
     faults.unless(math.isclose(sold, p.series_ohm), "series_not_sold", sold=sold)
