@@ -36,9 +36,9 @@ EDITS = [
     ("pack_price,price", "price", {"readable"}),
     ("needed,unit,", "needed,each,", {"readable"}),
     (",sheet,ream", ",piece,ream", {"units"}),
-    (",m,spool of 50 m", ",mm,spool of 50 m", {"units"}),
+    (",m,spool of 170 m", ",mm,spool of 170 m", {"units"}),
     (",32,piece,,", ",32,pair,,", {"units"}),
-    ("spool of 50 m,assumed", "spool of 50 m,quoted", {"units"}),
+    ("spool of 170 m,assumed", "spool of 170 m,quoted", {"units"}),
 ]
 
 

@@ -240,7 +240,7 @@ def test_a_key_follows_what_was_read_and_nothing_else(design_dir: Path) -> None:
     assert Dependencies(("tip",), ("a/*",)).key(hashes, {"a/b": "1", "c": "1"}, "code") != before
 
 
-_MASK = re.compile(r"mask/(emitter|receiver)_(?!sheet|wrapping)")
+_MASK = re.compile(r"(mask/(emitter|receiver)_(?!sheet|wrapping)|manual/\w+_mask\.svg)")
 
 
 @pytest.mark.slow
