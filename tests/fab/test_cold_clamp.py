@@ -53,9 +53,7 @@ def test_an_esd_diode_that_conducts_when_it_is_cold_is_refused(inputs: dict[str,
     config = inputs["dense"]
     diodes = dict(config.catalogue.esd_diodes)
     name = next(iter(diodes))
-    least_v = diodes[name].standoff_v + 0.1
     change = {"standoff_v": 3.4, "breakdown_v": (3.5, diodes[name].breakdown_v[1])}
-    assert least_v > 3.5
     diodes[name] = diodes[name].model_copy(update=change)
     catalogue = config.catalogue.model_copy(update={"esd_diodes": diodes})
     named = r"breakdown voltage from 3\.413 V on at 0 °C; signals .* have 3\.3 V, at most 3\.465 V"

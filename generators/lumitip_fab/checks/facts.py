@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from lumitip_fab.checks.order_ways import TEXTS
 from lumitip_fab.checks.readers.kicad_board import Part, read_board
 from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.readers.vertices import corners_mm
@@ -115,7 +116,7 @@ def _same(value: Any, text: str) -> bool:
 
 def _parts(outputs: Path, path: str, facts: Facts, design: Design) -> Iterator[str]:
     """Of a board: the lines of its tables for a PCB fab, and the numbers of all its parts."""
-    board, stop = Path(path).stem, f" ({passage('boards/fab/notes.txt', 'stop_row')})"
+    board, stop = Path(path).stem, f" ({passage(TEXTS, 'stop_row')})"
     for fab in design.fabs:
         tables = outputs / f"boards/{board}/order/{fab.name}_{board}_bom.csv"
         rows = table(tables.read_text(encoding="utf-8"))

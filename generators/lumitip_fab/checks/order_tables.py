@@ -9,7 +9,7 @@ import numpy as np
 
 from lumitip_fab.checks.board_read import ReadBoard
 from lumitip_fab.checks.order_layers import PLACE_MM
-from lumitip_fab.checks.order_ways import at_cell
+from lumitip_fab.checks.order_ways import TEXTS, at_cell
 from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.result import Measurement, count
@@ -90,7 +90,7 @@ def _value(read: ReadBoard, part: Part) -> str:
         return part.value
     if not at_cell(read, part):
         return part.value
-    return f"{part.value} ({passage('boards/fab/notes.txt', 'stop_row')})"
+    return f"{part.value} ({passage(TEXTS, 'stop_row')})"
 
 
 def _turned_by(read: ReadBoard, row: dict[str, str], part: Part, fab: Fab) -> float:

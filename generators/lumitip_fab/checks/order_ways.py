@@ -6,22 +6,17 @@ from itertools import groupby
 
 from lumitip_fab.checks.board_read import ReadBoard
 from lumitip_fab.checks.readers.kicad_board import Part
+from lumitip_fab.design.packages import KNOWN, OTHER
 from lumitip_fab.text import listed, passage
 
 TEXTS = "boards/fab/notes.txt"
 """Wording that both notes share with whoever writes them; the figures in it come from the board."""
-_KNOWN = ("datasheet", "measured")
-_OTHER = {"anode": "cathode", "cathode": "anode", "collector": "emitter", "emitter": "collector"}
 _DIODES = ("DIO", "LED")
-_ALIKE = "either way round"
 _LIES = {
-    "SOP": "lead 1 is at the dot, on the notch's side",
-    "SOT": "lead 1 is at the dot",
-    "Module": "pad 1 is at the dot",
-    "Header": "contact 1 is at the bar",
-    **dict.fromkeys(("RESC", "CAPC", "INDC", "FUSC", "XTAL", "PinSocket"), _ALIKE),
+    **{"SOP": "notch", "SOT": "dot", "Module": "pad", "Header": "bar"},
+    **dict.fromkeys(("RESC", "CAPC", "INDC", "FUSC", "XTAL", "PinSocket"), "alike"),
 }
-"""By the beginning of a land pattern's name."""
+"""Name of the line by the beginning of a land pattern's name."""
 
 
 def lying(read: ReadBoard) -> Iterator[str]:
@@ -41,7 +36,10 @@ def lying(read: ReadBoard) -> Iterator[str]:
             found.setdefault(lies, []).append(_range(run))
         else:
             yield from _marked(read, run, "cathode", confidence.get(run[0].ref, ""))
-    yield from (f"{listed(runs)}: {lies}." for lies, runs in found.items())
+    for lies, runs in found.items():
+        known = lies in _LIES.values()
+        text = passage(TEXTS, lies) if known else f"{{refs}}: unknown land pattern {lies}"
+        yield text.format(refs=listed(runs))
 
 
 def at_cell(read: ReadBoard, part: Part) -> bool:
@@ -66,19 +64,19 @@ def _kind(read: ReadBoard, part: Part) -> tuple[str, str, str]:
     if part.footprint.startswith(_DIODES):
         return letters, read.ordered(part.ref)[0], ""
     fits = [lies for start, lies in _LIES.items() if part.footprint.startswith(start)]
-    return letters, "", fits[0] if fits else f"unknown: {part.footprint}"
+    return letters, "", fits[0] if fits else part.footprint
 
 
 def _marked(read: ReadBoard, parts: list[Part], marked: str, confidence: str) -> Iterator[str]:
     """The lines on a part with a mark: its pads, and how far the mark is known."""
-    second = confidence if confidence in _KNOWN else "assumed"
+    second = confidence if confidence in KNOWN else "assumed"
     for name in ("pads", second) if confidence else ("pads",):
         yield passage(TEXTS, name).format(
             refs=_range(parts),
             part=read.ordered(parts[0].ref)[0],
             maker=dict(parts[0].fields).get("Manufacturer", ""),
             marked=marked,
-            other=_OTHER[marked],
+            other=OTHER[marked],
             confidence=confidence,
         )
 

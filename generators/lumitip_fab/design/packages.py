@@ -12,10 +12,16 @@ from lumitip_fab.catalogue.electronics import (
     Resistor,
     ResistorArray,
 )
+from lumitip_fab.catalogue.record import TRUSTED
 from lumitip_fab.design.boards import Finger
 
 Marked = Led | Photodetector
 """A part with a mark at one of its ends."""
+
+OTHER = {"anode": "cathode", "cathode": "anode", "collector": "emitter", "emitter": "collector"}
+"""The other terminal of a part with two."""
+KNOWN = TRUSTED
+"""Levels of confidence with which a mark needs no look at the part."""
 
 
 @dataclass(frozen=True)

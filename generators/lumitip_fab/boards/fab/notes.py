@@ -11,11 +11,12 @@ from lumitip_fab.boards.fab.order import (
     polarity_unknown,
     turned_by_assumption,
 )
-from lumitip_fab.boards.fab.ways import OTHER, lying, range_of
+from lumitip_fab.boards.fab.ways import lying, range_of
 from lumitip_fab.boards.model import AT_CELLS, BoardModel, Placement
 from lumitip_fab.boards.placed import pad_at, placed_pads
 from lumitip_fab.design import Fab, Flexible, Led, Panel, Photodetector
 from lumitip_fab.design.boards import thickness_off_mm
+from lumitip_fab.design.packages import OTHER
 from lumitip_fab.text import passage
 
 STOP_FILE = "STOP_READ_FIRST.txt"

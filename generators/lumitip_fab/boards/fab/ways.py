@@ -6,22 +6,19 @@ from itertools import groupby
 from lumitip_fab.boards.fab.order import TEXTS, assembled, natural
 from lumitip_fab.boards.model import AT_CELLS, Placement
 from lumitip_fab.design import Component
+from lumitip_fab.design.packages import KNOWN, OTHER
 from lumitip_fab.text import listed, passage
 
-OTHER = {"anode": "cathode", "cathode": "anode", "collector": "emitter", "emitter": "collector"}
-_KNOWN = ("datasheet", "measured")
 _DIODES = ("tvs diode", "esd diode", "schottky diode", "indicator")
-_ALIKE = "either way round"
+_ALIKE = ("resistor", "resistor array", "capacitor", "inductor", "fuse", "crystal", "socket")
 _LIES = {
-    "multiplexer": "lead 1 is at the dot, on the notch's side",
-    **dict.fromkeys(("switch", "transistor", "current source"), "lead 1 is at the dot"),
-    "regulator": "lead 1 is at the dot",
-    "module": "pad 1 is at the dot",
-    "header": "contact 1 is at the bar",
-    **dict.fromkeys(("resistor", "resistor array", "capacitor", "inductor"), _ALIKE),
-    **dict.fromkeys(("fuse", "crystal", "socket"), _ALIKE),
+    "multiplexer": "notch",
+    **dict.fromkeys(("switch", "transistor", "current source", "regulator"), "dot"),
+    "module": "pad",
+    "header": "bar",
+    **dict.fromkeys(_ALIKE, "alike"),
 }
-"""By the kind of part: every kind but diodes, whose lines have their own words."""
+"""Name of the line by the kind of part: every kind but diodes, which have their own lines."""
 
 
 def lying(board: Placement) -> Iterator[str]:
@@ -41,8 +38,8 @@ def lying(board: Placement) -> Iterator[str]:
         else:
             yield from _marked(run, "cathode", run[0].mark_confidence)
     yield ""
-    for lies in sorted(found, key=lambda lies: (lies == _ALIKE, lies)):
-        yield f"{listed(found[lies])}: {lies}."
+    for lies in sorted(found, key=lambda lies: (lies == "alike", lies)):
+        yield passage(TEXTS, lies).format(refs=listed(found[lies]))
     yield ""
 
 
@@ -65,7 +62,7 @@ def _marked(parts: list[Component], marked: str, confidence: str) -> Iterator[st
     latter where a band round the body shows it."""
     names = ["pads"]
     if confidence:
-        names.append(confidence if confidence in _KNOWN else "assumed")
+        names.append(confidence if confidence in KNOWN else "assumed")
     for name in names:
         yield passage(TEXTS, name).format(
             refs=range_of(parts),
