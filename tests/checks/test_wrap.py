@@ -1,8 +1,10 @@
 """Damage what wraps the skin round the tip, and exactly the right checks fail."""
 
 import math
+import re
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +12,12 @@ import pytest
 
 from damages import Body, box, carve, excerpt, failing, flip_a_triangle
 from lumitip_fab.checks import wrap
-from lumitip_fab.config.load import load
+from lumitip_fab.config.load import Input, load
 from lumitip_fab.derive import derive
+from lumitip_fab.derive.auto.resolve import resolve
+from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.finger.tip_slots import LIP
+from lumitip_fab.derive.once import derive_once
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import design_text, read_design
 from lumitip_fab.design.frames import (
@@ -19,6 +25,7 @@ from lumitip_fab.design.frames import (
     mould_bed_to_sensor,
     prop_bed_to_sensor,
 )
+from lumitip_fab.errors import InputError
 from lumitip_fab.parts.mould import mould_files
 from lumitip_fab.parts.prop import prop_files
 from printed_fingers import written
@@ -199,11 +206,15 @@ def test_damaged_files(copied: Path) -> None:
     assert failing(copied, "wrap") == {"prop"}
 
 
-def of_lines(design_dir: Path, tmp_path: Path, lines: str) -> Design:
+def config_of(design_dir: Path, tmp_path: Path, lines: str) -> Input:
     folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
     file = folder / "mine.toml"
     file.write_text(f'extends = "fingertip.toml"\n{lines}', encoding="utf-8")
-    return derive(load(file))
+    return load(file)
+
+
+def of_lines(design_dir: Path, tmp_path: Path, lines: str) -> Design:
+    return derive(config_of(design_dir, tmp_path, lines))
 
 
 @pytest.mark.parametrize(
@@ -211,6 +222,10 @@ def of_lines(design_dir: Path, tmp_path: Path, lines: str) -> Design:
     [
         "[mould]\ntip_lip_mm = 0.3\n",
         "[tip]\nedge_mm = 0.5\n",
+        "[mould]\ntip_lip_mm = 1.0\n",
+        "[tip]\nangle_deg = 12.2\n",  # of the published part
+        "[tip]\nangle_deg = 40\n",
+        "[stack]\npcb_mm = 0.8\n",
         "[mould]\ndraft_deg = 8\n[printer]\nfit_mm = 0.1\n",
         'extends = "presets/flex.toml"',
     ],
@@ -230,22 +245,51 @@ def test_other_tips_pass_every_check(lines: str, design_dir: Path, tmp_path: Pat
     assert not [m for m in found if not m.passed]
 
 
-@pytest.mark.parametrize(
-    "lines",
-    [
-        "[mould]\ntip_lip_mm = 0\n",
-        "[tip]\nangle_deg = 40\n",
-        "[tip]\nangle_deg = 0\n",
-        "[stack]\npcb_mm = 0.8\n",
-        "[mould]\ntip_lip_mm = 1.5\n",
-    ],
-)
+NO_ROOM = {
+    "[tip]\nangle_deg = 5\n": "at a tip edge of 1.88 the mould's wall",
+    "[outline]\ntip_fraction = 0.1\n": "its straight part is 5.8 long",
+    "[outline]\ntip_margin_mm = 3.0\n": "0.51 of the plate is left between them and the pocket",
+}
+
+
+@pytest.mark.parametrize("lines", NO_ROOM)
 def test_without_room_the_skin_ends_at_the_edge(
     lines: str, design_dir: Path, tmp_path: Path
 ) -> None:
     design = of_lines(design_dir, tmp_path, lines)
     assert design.tip.slots == () and design.props == ()
     assert design.mould.level_mm(design.outline.tip_y_mm) == 0.0
+    assert design.mould.guided_mm == design.stack.guided_mm
+    (choice,) = [c for c in design.choices if c.field == LIP]
+    assert float(choice.value) == 0 and NO_ROOM[lines] in choice.reason
+
+
+@pytest.mark.parametrize("lines", NO_ROOM)
+def test_a_lip_that_the_file_writes_is_never_left_out(
+    lines: str, design_dir: Path, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=re.escape(NO_ROOM[lines])) as refused:
+        of_lines(design_dir, tmp_path, f"{lines}[mould]\ntip_lip_mm = 0.4\n")
+    assert [p.field for p in refused.value.problems] == [LIP]
+
+
+def test_as_much_as_the_refusal_says_is_accepted(design_dir: Path, tmp_path: Path) -> None:
+    lines = "[mould]\ntip_lip_mm = {}\n"
+    with pytest.raises(InputError) as refused:
+        of_lines(design_dir, tmp_path / "more", lines.format(1.5))
+    (most,) = re.findall(r"holds at most ([\d.]+)", str(refused.value))
+    design = of_lines(design_dir, tmp_path / "most", lines.format(most))
+    assert design.props[0].lip_mm == float(most)
+    assert design.stack.guided_mm < design.mould.guided_mm < design.stack.plate_mm
+
+
+def test_an_unwrapped_design_is_the_same_from_its_resolved_file(
+    design_dir: Path, tmp_path: Path
+) -> None:
+    resolved = resolve(config_of(design_dir, tmp_path, "[tip]\nangle_deg = 5\n"))
+    again = derive_once(resolved.config, Diagnostics(resolved.config))
+    assert again.props == resolved.design.props == ()
+    assert replace(again, choices=resolved.design.choices) == resolved.design
 
 
 def test_the_level_is_that_of_a_liquid_at_rest(design_dir: Path) -> None:

@@ -40,6 +40,8 @@ class Mould:
     """Rounding of the skin at the gripper end."""
     wall_gap_mm: float
     draft_deg: float
+    guided_mm: float
+    """How far its wall reaches along the plate's side, over the rim plane."""
     wall_mm: float
     """Thickness of its walls, and of its floor, under an insert too."""
     outside_mm: float

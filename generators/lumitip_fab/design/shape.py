@@ -115,7 +115,7 @@ class Stack:
 
     @property
     def guided_mm(self) -> float:
-        """How far the mould's wall reaches along the plate's side."""
+        """How far the mould's wall reaches along the plate's side, at least."""
         return self.pcb_mm if self.sunk else GUIDED * self.floor_mm
 
     @property

@@ -81,7 +81,7 @@ def mould_solid(
     Raises:
         BuildError: if the kernel does not make one valid solid of it.
     """
-    top_z = stack.face_z_mm - stack.guided_mm
+    top_z = stack.face_z_mm - mould.guided_mm
     outside = mould.outside_mm
     weir_half = WEIR_FRACTION * finger.notch.x_max_mm
     end_y = mould.wall_mm - mould.letter.wall_mm

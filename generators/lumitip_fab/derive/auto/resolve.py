@@ -11,6 +11,7 @@ from lumitip_fab.derive.auto.judge import Verdict, judge
 from lumitip_fab.derive.auto.search import Change, search
 from lumitip_fab.derive.auto.starts import proposals
 from lumitip_fab.derive.finger.tip import EDGE, START, wedge
+from lumitip_fab.derive.finger.tip_slots import LIP
 from lumitip_fab.design import Choice, Design
 from lumitip_fab.errors import InputError
 
@@ -68,7 +69,7 @@ def resolve(config: Input) -> Resolved:
     started = _started(config, reasons)
     end = search(judge(started), config.automatic, reasons.moved)
     if end.design is not None:
-        end = _settled(end, reasons)
+        end = _without_lip(_settled(end, reasons), reasons)
     if end.design is None:
         raise RuleError(end)
     choices = reasons.choices(end.config)
@@ -85,6 +86,18 @@ def _settled(end: Verdict, reasons: _Reasons) -> Verdict:
     for name in moved:
         reasons.propose(name, f"follows tip.angle_deg = {end.config.parameters.tip.angle_deg:g}")
     return judge(end.config.with_values(moved))
+
+
+def _without_lip(end: Verdict, reasons: _Reasons) -> Verdict:
+    """The same design, with 0 for an automatic lip that it has no room for."""
+    if LIP not in end.config.automatic or end.config.value(LIP) == 0:
+        return end
+    written = judge(replace(end.config, automatic=end.config.automatic - {LIP}))
+    refusal = next((p.message for p in written.problems if p.field == LIP), "")
+    if not refusal:
+        return end
+    reasons.propose(LIP, "otherwise it " + refusal.partition("; 0 or")[0])
+    return judge(end.config.with_values({LIP: 0.0}))
 
 
 def accepted_with(config: Input, values: Mapping[str, Any]) -> bool:

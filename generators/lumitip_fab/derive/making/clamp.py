@@ -83,7 +83,7 @@ class _Plan:
         ends = foot.y_min_mm, foot.y_max_mm
         beside_mm = min(map(self.body.outline.half_width_at, ends)) - foot.x_max_mm
         wall_mm = beside_mm + mould.outside_mm - mould.wall_mm
-        off_mm = math.hypot(wall_mm, stack.plate_mm - stack.guided_mm)
+        off_mm = math.hypot(wall_mm, stack.plate_mm - mould.guided_mm)
         return beside_mm >= 0 and off_mm >= OFF_WALL_MM + self.printing.fit_mm
 
     def behind_y_mm(self) -> float:
@@ -251,7 +251,7 @@ def _needed_n(plan: _Plan, wires: int) -> float:
     and half of what the plate's guided part displaces of silicone."""
     outline, mould = plan.body.outline, plan.mould
     lever = outline.length_mm / (outline.tip_y_mm - mould.pads[1][1])
-    ml = float(Polygon(outline.polygon()).area) * plan.body.stack.guided_mm / 1000
+    ml = float(Polygon(outline.polygon()).area) * mould.guided_mm / 1000
     floats_n = ml * mould.density_g_ml / 1000 * GRAVITY_M_S2
     return round(RESERVE * (wires * WIRE_N * lever + floats_n / 2), 3)
 

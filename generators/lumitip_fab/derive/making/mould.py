@@ -8,6 +8,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.boards import Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.outline import DEPTH_MM, least_letter_mm, letter_on
+from lumitip_fab.derive.finger.tip_slots import guided_mm
 from lumitip_fab.derive.making.insert import derive_inserts
 from lumitip_fab.derive.making.prop import derive_prop
 from lumitip_fab.design import Board, Grip, Letter, Mould, Outline, Point, Prop, Stack, Tip
@@ -69,7 +70,8 @@ def derive_mould(
         (p.mould.wall_mm, floor_mm, floor_mm + stack.cover_mm),
         recess_mm,
     )
-    outside_mm = _outside_mm(config, stack)
+    guided = guided_mm(config, stack, tip)
+    outside_mm = _outside_mm(config, guided)
     weir_y_mm = outline.end_y_mm - outside_mm - LEDGE_MM
     letter = _letter(config, weir_y_mm, stack, floor_mm, faults)
     ends = weir_y_mm, -letter.wall_mm, outline.tip_y_mm + outside_mm
@@ -80,6 +82,7 @@ def derive_mould(
         end_round_mm=END_ROUND * p.stack.silicone_mm,
         wall_gap_mm=p.mould.wall_gap_mm,
         draft_deg=p.mould.draft_deg,
+        guided_mm=guided,
         wall_mm=p.mould.wall_mm,
         outside_mm=outside_mm,
         weir_y_mm=weir_y_mm,
@@ -169,10 +172,10 @@ def _letter(
     return letter_on(low, high, min(DEPTH_MM, wall - p.printer.min_wall_mm), end_mm, line_mm)
 
 
-def _outside_mm(config: Input, stack: Stack) -> float:
+def _outside_mm(config: Input, guided: float) -> float:
     """From the outline to the outside of the wall, where it ends."""
     mould = config.parameters.mould
-    rise = stack.guided_mm * math.tan(math.radians(mould.draft_deg))
+    rise = guided * math.tan(math.radians(mould.draft_deg))
     return mould.wall_gap_mm + rise + mould.wall_mm
 
 
