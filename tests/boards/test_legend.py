@@ -1,6 +1,7 @@
 """Print on the boards of every preset: texts, their places and their gaps."""
 
 import dataclasses
+import math
 import shutil
 from itertools import combinations
 from pathlib import Path
@@ -170,3 +171,19 @@ def test_a_label_without_room_above_its_pad_moves_aside(design_dir: Path, tmp_pa
     assert len(at) == 1
     assert 0.0 < abs(at[0][0] - x) < finger.connector.pitch_mm / 2
     assert abs(at[0][1] - y) < finger.connector.pitch_mm
+
+
+def test_the_number_of_the_first_wire_pad_is_beside_it(design_dir: Path, tmp_path: Path) -> None:
+    """Where a tie's hole and a capacitor are to the left of the row, too."""
+    file = Path(shutil.copytree(design_dir, tmp_path / "design")) / "wide.toml"
+    file.write_text('extends = "fingertip.toml"\n[grid]\npitch_mm = 8\n', encoding="utf-8")
+    design = derive(load(file))
+    board = place(design, design.receiver)
+    (one,) = [text for side, text in board.texts if (side, text.text) == ("front", "1")]
+    (row,) = [part for part in board.components if part.pins and part.contacts]
+    parts = [part for part in board.components if part.side == "front"]
+    ends = [(pad.x_mm, pad.y_mm, part.ref) for part in parts for pad in placed_pads(part)]
+    nearest = min(ends, key=lambda end: math.hypot(end[0] - one.x_mm, end[1] - one.y_mm))
+    first = placed_pads(row)[0]
+    assert nearest == (first.x_mm, first.y_mm, row.ref)
+    assert math.hypot(first.x_mm - one.x_mm, first.y_mm - one.y_mm) < 4.5

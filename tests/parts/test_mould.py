@@ -1,12 +1,14 @@
 """The mould's solids, note and files."""
 
 import re
+import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 import trimesh
 
 from lumitip_fab.config.load import load
@@ -14,9 +16,9 @@ from lumitip_fab.derive import derive
 from lumitip_fab.derive.making.mould import whole_layers
 from lumitip_fab.design import Box, Design, Insert, Mould
 from lumitip_fab.design.encoding import read_design
-from lumitip_fab.design.making import LEDGE_MM
+from lumitip_fab.design.making import FOOT_CHAMFER_MM, LEDGE_MM
 from lumitip_fab.docs import casting
-from lumitip_fab.parts import mould, skin
+from lumitip_fab.parts import export, mould, skin
 
 pytestmark = pytest.mark.slow
 
@@ -216,3 +218,23 @@ def test_each_finger_s_mould_has_its_letter(design: Design) -> None:
         box = apart.bounding_box()
         assert 0.05 * stroke < apart.volume < 0.5 * stroke
         assert pytest.approx(letter.depth_mm) == box.max.Y - box.min.Y
+
+
+def test_no_triangle_leaves_the_curved_wall(design_dir: Path, tmp_path: Path) -> None:
+    """Middles of the edges of the wall's triangles are as far from the outline as the wall is."""
+    file = Path(shutil.copytree(design_dir, tmp_path / "design")) / "mine.toml"
+    lines = "[grid]\npitch_mm = 7\ncolumns = [6, 5, 6, 5, 6]\n"
+    file.write_text(f'extends = "fingertip.toml"\n{lines}', encoding="utf-8")
+    design = derive(load(file))
+    stack, made = design.stack, design.mould
+    solid = mould.mould_solid(design.receiver, stack, design.outline, made, design.clamps)
+    surface = export.mesh(solid, mould.CHORD_MM)
+    corners = surface.points_mm[surface.triangles]
+    middles = (corners + np.roll(corners, 1, axis=1)) / 2
+    plate = shapely.Polygon(design.outline.polygon(512))
+    off_mm = shapely.distance(plate, shapely.points(middles[..., :2])) - made.outside_mm
+    low = stack.silicone_z_mm + made.floor_mm - FOOT_CHAMFER_MM - 0.1
+    wall = (middles[..., 2] < low) & (np.abs(off_mm) < made.wall_mm / 4)
+    at_tip = wall & (middles[..., 1] > design.outline.tip_y_mm - 6)
+    assert at_tip.sum() > 100
+    assert np.abs(off_mm[at_tip]).max() < 2 * mould.CHORD_MM

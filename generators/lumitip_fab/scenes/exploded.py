@@ -26,6 +26,7 @@ ELEVATION_DEG = 32.0
 SPREAD = 0.9  # of a layer's height on the page, from layer to layer
 LABEL_MM = 10.0  # from the drawing to its labels
 WORDS_MM = 38.0  # width of the longest label
+TITLE_MM = 8.0  # from the title's foot to the page's edge
 _PAGE_MM = 160.0  # height up to which a page has words of usual size: the manual sets it smaller
 _CHORD_MM = 0.05
 _STEPS = 24  # chords of a curve on the page
@@ -200,7 +201,7 @@ def _label(sheet: Sheet, layers: list[Layer], finger: Finger, stack: Stack) -> N
     sheet.words(
         left - words_mm, top, f"{finger.name.capitalize()} finger, exploded", "title", "start"
     )
-    sheet.cover(left - words_mm, top + 2 * sheet.words_scale)
+    sheet.cover(left - words_mm, top + TITLE_MM * sheet.words_scale - sheet.margin_mm)
     sheet.cover(right + words_mm, top)
 
 

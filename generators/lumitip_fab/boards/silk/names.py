@@ -19,6 +19,8 @@ _STEP_MM = 0.25
 _ALONG_MM = 1.3  # that a name may stand beside the middle of its pad: half a pitch of wires
 _SPARE_MM = 0.06  # letters do not stand quite in the middle of their text
 _BEYOND_MM = 5.0  # farthest place from a pad
+_FIRST_MM = 0.6  # from the first pad to the middle of its number
+_NEAR_MM = 4.5  # farthest place of that from the pad's middle: further away it is another part's
 _ASIDE_MM = (0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9)  # of a name without room at its pad's middle
 _AWAY_MM = 0.4  # from a contact to its name
 
@@ -50,9 +52,14 @@ def print_names(page: Page) -> None:
 
 
 def _first_pad(page: Page, at: Point, half_mm: float) -> None:
-    """The number of the first pad of a row: to its left, or above or below it."""
-    (x, y), out = at, (half_mm + np.arange(0.6, _BEYOND_MM, _STEP_MM)).tolist()
-    places = [*((x - d, y) for d in out), *((x, y + s * d) for d in out for s in (-1, 1))]
+    """The number of the first pad of a row: to its left, or else the nearest place that is not on
+    the side of the other pads."""
+    (x, y), least = at, half_mm + _FIRST_MM
+    beside = [(x - d, y) for d in np.arange(least, _NEAR_MM, _STEP_MM).tolist()]
+    steps = np.arange(0.0, _NEAR_MM, _STEP_MM).tolist()
+    round_it = [(x - d, y + s * up) for d, up, s in product(steps, steps, (-1, 1))]
+    round_it = [place for place in round_it if least <= math.dist(place, at) < _NEAR_MM]
+    places = [*beside, *sorted(round_it, key=lambda place: math.dist(place, at))]
     page.require("the mark '1' of the first wire pad", [page.text("1", at) for at in places])
 
 
