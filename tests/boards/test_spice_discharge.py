@@ -12,7 +12,7 @@ from lumitip_fab.checks.discharge import Clamp, generator_a, pin_pulse_a
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.design.electrical import Protection
+from lumitip_fab.design.protection import Protection
 from spice_runs import needs_ngspice, simulated
 
 pytestmark = pytest.mark.slow

@@ -273,6 +273,13 @@ def test_a_lip_that_the_file_writes_is_never_left_out(
     assert [p.field for p in refused.value.problems] == [LIP]
 
 
+def test_an_automatic_lip_is_as_thin_as_it_must_be(design_dir: Path, tmp_path: Path) -> None:
+    design = of_lines(design_dir, tmp_path, "[tip]\nangle_deg = 11\n")
+    assert design.props[0].lip_mm == 0.3
+    (choice,) = [c for c in design.choices if c.field == LIP]
+    assert choice.reason.startswith("otherwise it is 0.4; at a tip edge of 1.23")
+
+
 def test_as_much_as_the_refusal_says_is_accepted(design_dir: Path, tmp_path: Path) -> None:
     lines = "[mould]\ntip_lip_mm = {}\n"
     with pytest.raises(InputError) as refused:

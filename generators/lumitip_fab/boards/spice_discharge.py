@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from lumitip_fab.boards.model import GROUND
 from lumitip_fab.boards.spice import netlist
 from lumitip_fab.design import AuxiliaryBoard, Design
-from lumitip_fab.design.electrical import Protection
+from lumitip_fab.design.protection import Protection
 from lumitip_fab.pipeline.artefact import Artefact
 
 _END_NS, _STEP_PS = 200.0, 20.0

@@ -9,7 +9,7 @@ from lumitip_fab.checks.board_read import ReadBoard, ohm
 from lumitip_fab.checks.discharge import Clamp, pin_pulse_a
 from lumitip_fab.checks.readers.kicad_board import Terminal
 from lumitip_fab.checks.result import Measurement
-from lumitip_fab.design.electrical import Protection
+from lumitip_fab.design.protection import Protection
 
 GROUND, CATHODE, ANODE = "GND", "1", "2"
 _PICO = re.compile(r"(\d+(?:\.\d+)?)([pn])F")

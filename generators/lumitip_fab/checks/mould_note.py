@@ -81,7 +81,7 @@ def _wanted(design: Design) -> Iterator[tuple[str, Figures]]:
     yield r"can be worked for some (\S+) min at room", workable
     dried: Figures = [(f"{mould.primer_dry_min:g}",)] if mould.primer else []
     yield r"Let it dry for (\S+) min", dried
-    yield r"Time:\*\* 20 min, (\S+) min to dry", dried
+    yield r"Time:\*\* 20 min, twice (\S+) min to dry", dried
     yield r"with (\S+)% for the cup", [(f"{100 * mould.waste_fraction:.0f}",)]
 
 

@@ -107,7 +107,6 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     body, casting = derive_body(config, stack, plan, faults)
     silhouette, coupling, slicing = body.outline, body.mount, body.slicing
     printing = derive_printing(config, silhouette, faults)
-    heat = derive_heat(config, slicing, casting, faults)
     plate = derive_fit_plate(config, plan, stack, coupling, faults)
     sheet = mask.derive_mask(config, silhouette, plan, faults)
     rules = derive_rules(config, faults)
@@ -120,6 +119,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     panels = derive_panels(config, plan.board.box, (*breakout, *flange), faults)
     circuit = wiring.build_wiring(config, strings, muxing)
     figures = derive_electrical(config, strings, muxing, circuit.pull_ups, faults)
+    heat = derive_heat(config, slicing, casting, silhouette, figures, faults)
     feed = derive_feed(config, faults)
     joints = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
     cabling = derive_cabling(config, joints, silhouette, coupling, circuit, figures, faults)

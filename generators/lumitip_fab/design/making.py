@@ -173,7 +173,7 @@ class HeatedPart:
 
     name: str
     """`"backing"`, `"board"`, `"film"`, `"glue"`, `"insert"`, `"insulation"`, `"interface"`,
-    `"mould"`, `"primer"`, `"silicone"`, `"tape"` or `"thread"`."""
+    `"mask"`, `"mould"`, `"primer"`, `"silicone"`, `"tape"` or `"thread"`."""
     material: str
     limit_c: float
     """Highest temperature that its material bears in this step (°C)."""
@@ -190,7 +190,7 @@ class HeatStep:
     """A step that heats parts, all of them to one temperature."""
 
     name: str
-    """`"solder"`, `"cure"` or `"crease"`."""
+    """`"solder"`, `"cure"`, `"crease"` or `"use"`."""
     place: str
     """Description of the heated object, for the manual."""
     temperature_c: float

@@ -195,7 +195,6 @@ def _tried(design: Design) -> str:
         "primed" if primed else "unprimed",
         primer=mould.primer,
         primer_dry_min=mould.primer_dry_min,
-        beside=beside,
     )
     return _text(
         "tried",
@@ -203,14 +202,15 @@ def _tried(design: Design) -> str:
         inhibited_by=", ".join(mould.inhibited_by),
         trial_g=_trial(mould),
         spot=f"{'across the glue round' if design.stack.sunk else 'beside'} the board",
-        drying=f", {mould.primer_dry_min:g} min to dry" * primed,
+        drying=f", twice {mould.primer_dry_min:g} min to dry" * primed,
         primer=f"{mould.primer}, a fine brush, " * primed,
         primed=first + "\n",
         film=", and one on a piece that is left over of the smooth film" if mould.inserts else "",
         peels=_text("peels") if mould.inserts else "",
-        again=", prime the spot again and let it dry" * primed,
+        then="go on with 3" if primed else "cast",
+        primed_all=_text("primed_all", beside=beside) if primed else "",
         longer="let the glue harden longer, " * design.stack.sunk,
-        reprimed=", and prime it" * primed,
+        reprimed=", prime it, and try another drop" * primed,
         cure_h=mould.cure_h,
         cure_c=mould.cure_c,
     )

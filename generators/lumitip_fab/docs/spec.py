@@ -285,7 +285,8 @@ def _further(design: Design) -> dict[str, Any]:
         "across": "diameter" if shape == "circle" else "across flats",
         "flex_lean": " and flex.lean_deg" if design.interfaces else "",
         "trusted": _trusted(design),
-        "heat_w": design.electrical.heat_w,
+        "electrical": design.electrical,
+        "use": design.heat_steps["use"],
     }
 
 

@@ -15,6 +15,9 @@ from lumitip_fab.derive.finger.tip_slots import LIP
 from lumitip_fab.design import Choice, Design
 from lumitip_fab.errors import InputError
 
+THINNER_LIPS_MM = (0.3, 0.2, 0.0)
+"""Tried in turn. A table that leans by 0.2° takes 0.2 mm of a lip."""
+
 
 @dataclass(frozen=True)
 class Resolved:
@@ -69,7 +72,7 @@ def resolve(config: Input) -> Resolved:
     started = _started(config, reasons)
     end = search(judge(started), config.automatic, reasons.moved)
     if end.design is not None:
-        end = _without_lip(_settled(end, reasons), reasons)
+        end = _thinner_lip(_settled(end, reasons), reasons)
     if end.design is None:
         raise RuleError(end)
     choices = reasons.choices(end.config)
@@ -88,16 +91,23 @@ def _settled(end: Verdict, reasons: _Reasons) -> Verdict:
     return judge(end.config.with_values(moved))
 
 
-def _without_lip(end: Verdict, reasons: _Reasons) -> Verdict:
-    """The same design, with 0 for an automatic lip that it has no room for."""
-    if LIP not in end.config.automatic or end.config.value(LIP) == 0:
-        return end
+def _thinner_lip(end: Verdict, reasons: _Reasons) -> Verdict:
+    """The same design, with a thinner automatic lip, or none, where there is no room for it."""
+    for lip_mm in THINNER_LIPS_MM:
+        refusal = _refused_lip(end)
+        if not refusal:
+            return end
+        reasons.of.setdefault(LIP, "otherwise it " + refusal.partition("; 0 or")[0])
+        end = judge(end.config.with_values({LIP: lip_mm}))
+    return end
+
+
+def _refused_lip(end: Verdict) -> str:
+    """The words in which an automatic lip would be refused if it were written; empty if not."""
+    if LIP not in end.config.automatic:
+        return ""
     written = judge(replace(end.config, automatic=end.config.automatic - {LIP}))
-    refusal = next((p.message for p in written.problems if p.field == LIP), "")
-    if not refusal:
-        return end
-    reasons.propose(LIP, "otherwise it " + refusal.partition("; 0 or")[0])
-    return judge(end.config.with_values({LIP: 0.0}))
+    return next((problem.message for problem in written.problems if problem.field == LIP), "")
 
 
 def accepted_with(config: Input, values: Mapping[str, Any]) -> bool:

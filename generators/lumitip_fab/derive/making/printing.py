@@ -5,7 +5,8 @@ from dataclasses import replace
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.stack import is_flex
-from lumitip_fab.design import HeatedPart, HeatStep, Mould, Slicing
+from lumitip_fab.derive.making.warmth import in_use_c, most_heat_w
+from lumitip_fab.design import Electrical, HeatedPart, HeatStep, Mould, Outline, Slicing
 from lumitip_fab.design.making import Filament
 
 
@@ -70,23 +71,33 @@ _REMEDY = {
         "a silicone that cures at a lower temperature, or {other}",
     ),
     "crease": ("mask.film", "another film in parts/films.toml"),
+    "use": (
+        "emitter.max_heat_w",
+        "{most_w:g} or less, a switch for the LEDs (emitter.switch), or {other}",
+    ),
 }
 """Field to refuse, and what to change, of each step."""
 _OTHER = {
+    "backing": "another filament (backing.material)",
     "glue": "another glue (backing.glue)",
     "insulation": "wires with another insulation, with its limit_c in parts/packs.toml",
     "primer": "another primer (mould.primer)",
     "tape": "another tape (mould.tape)",
     "thread": "another thread, with its limit_c in parts/packs.toml",
 }
-"""Other parts that can be chosen beside a silicone."""
+"""Other parts that can be chosen beside a silicone or a current."""
 
 
 def derive_heat(
-    config: Input, slicing: Slicing, mould: Mould, faults: Diagnostics
+    config: Input,
+    slicing: Slicing,
+    mould: Mould,
+    outline: Outline,
+    figures: Electrical,
+    faults: Diagnostics,
 ) -> tuple[HeatStep, ...]:
-    """Soldering, curing and, unless a printed mask folds along its grooves, creasing, in the order
-    of work.
+    """Soldering, curing, creasing unless a printed mask folds along its grooves, and use, in that
+    order.
 
     Printing is none of them: it melts a filament, and heats no part that is already made.
     """
@@ -125,9 +136,35 @@ def derive_heat(
             (HeatedPart("film", config.title("mask.film"), film.limit_c),),
         )
         steps = (*steps, crease)
+    steps = (*steps, _use(config, slicing, in_use_c(figures, outline)))
     for step in steps:
-        _refuse(step, config, faults)
+        most_w = most_heat_w(figures, outline, step.limit_c)
+        _refuse(step, config, faults, most_w)
     return steps
+
+
+def _use(config: Input, slicing: Slicing, temperature_c: float) -> HeatStep:
+    """The finger warmed by its own LEDs; primer and tape bear no load then."""
+    p, known, mask = config.parameters, config.catalogue, config.parts.mask
+    laminate = known.laminates.flexible if is_flex(p) else known.laminates.rigid
+    plate, sheet = slicing.backing.name, p.mask.filament
+    masked = HeatedPart("film", config.title("mask.film"), mask.film.limit_c)
+    if p.mask.route == "tpu":
+        masked = HeatedPart("mask", sheet, known.filaments[sheet].limit_c)
+    return HeatStep(
+        "use",
+        "the emitter's finger by its LEDs, in the still air of a room (an estimate)",
+        temperature_c,
+        (
+            HeatedPart(
+                "silicone", config.title("mould.silicone"), config.parts.mould.silicone.limit_c
+            ),
+            HeatedPart("backing", plate, known.filaments[plate].limit_c),
+            HeatedPart("board", "polyimide" if is_flex(p) else "FR-4", laminate.limit_c),
+            masked,
+            *(part for part in _joined(config) if part.name not in {"primer", "tape"}),
+        ),
+    )
 
 
 def _joined(config: Input) -> tuple[HeatedPart, ...]:
@@ -157,8 +194,9 @@ def _inserted(config: Input, mould: Mould) -> tuple[HeatedPart, ...]:
     return tuple(HeatedPart("insert", each.film, film.limit_c) for each in mould.inserts if film)
 
 
-def _refuse(step: HeatStep, config: Input, faults: Diagnostics) -> None:
-    """Refuse a step that heats a part beyond the limit of its material."""
+def _refuse(step: HeatStep, config: Input, faults: Diagnostics, most_w: float) -> None:
+    """Refuse a step that heats a part beyond the limit of its material; of the LEDs' own heat,
+    `most_w` is what it bears."""
     field, remedy = _REMEDY[step.name]
     for part in step.parts:
         faults.unless(
@@ -167,6 +205,8 @@ def _refuse(step: HeatStep, config: Input, faults: Diagnostics) -> None:
             field=field,
             step=step,
             part=part,
-            remedy=remedy.format(other=_OTHER.get(part.name, "a material that withstands it")),
+            remedy=remedy.format(
+                other=_OTHER.get(part.name, "a material that withstands it"), most_w=most_w
+            ),
             value=config.value(field),
         )

@@ -15,7 +15,8 @@ from lumitip_fab.derive.wiring.sources import COLDEST_C, FORWARD_V_PER_K, HOTTES
 from lumitip_fab.derive.wiring.strings import Strings as DerivedStrings
 from lumitip_fab.derive.wiring.strings import string_of
 from lumitip_fab.derive.wiring.wiring import Muxing
-from lumitip_fab.design.electrical import Channel, Electrical, Protection, Strings
+from lumitip_fab.design.electrical import Channel, Electrical, Strings
+from lumitip_fab.design.protection import Protection
 
 SHORTER = 0.75  # of a string's LEDs, to compare
 

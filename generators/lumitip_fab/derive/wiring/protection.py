@@ -25,7 +25,7 @@ from lumitip_fab.derive.wiring.ratings import (
 )
 from lumitip_fab.derive.wiring.sources import COLDEST_C
 from lumitip_fab.derive.wiring.wiring import Muxing
-from lumitip_fab.design.electrical import Protection
+from lumitip_fab.design.protection import Protection
 
 DISCHARGE_KV = 8.0
 """Contact discharge of level 4, the highest of IEC 61000-4-2."""
