@@ -11,9 +11,12 @@ from manifold3d import Manifold
 from backing_damages import EMITTER_STL, FILES, STL
 from damages import box, carve, failing
 from lumitip_fab.checks import backing
+from lumitip_fab.config.load import load
+from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.design.frames import mount_to_sensor
+from printed_fingers import written
 
 pytestmark = pytest.mark.slow
 
@@ -215,3 +218,15 @@ def test_every_check_fails_for_some_damage(outputs: Path) -> None:
     design = read_design(outputs / "design.json")
     names = {m.check.removeprefix("backing.") for m in backing.measure(outputs, design)}
     assert names == set().union(*SENSOR_FRAME.values(), *MOUNT_FRAME.values(), *FILES.values())
+
+
+@pytest.mark.parametrize("gap_mm", [0.1, 0.3])
+def test_a_pocket_s_gap_may_be_at_either_end_of_its_range(
+    gap_mm: float, design_dir: Path, tmp_path: Path
+) -> None:
+    file = Path(shutil.copytree(design_dir, tmp_path / "design")) / "mine.toml"
+    lines = f"[backing]\npocket_clearance_mm = {gap_mm}\n"
+    file.write_text(f'extends = "fingertip.toml"\n{lines}', encoding="utf-8")
+    design = derive(load(file))
+    out = written(design, design, tmp_path / "out")
+    assert not [m for m in backing.measure(out, design) if not m.passed]

@@ -16,6 +16,7 @@ from lumitip_fab.design import Box
 from lumitip_fab.design.frames import applied, mount_to_sensor
 
 GAP_MM = (0.10, 0.30)
+STL_DECIMALS = 4  # of mm: its corners are in single precision
 OUTLINE_MM = 0.05
 DEPTH_MM = 0.05
 PIN_MM = 0.05
@@ -68,9 +69,8 @@ def measure_pocket(part: Printed) -> Iterator[Measurement]:
         gaps = (
             shapely.distance(shapely.points(from_), shapely.intersection(lines, there)) - 0.5 - off
         )
-        yield part.figure(
-            "pocket_gap", farthest(np.asarray(gaps), (low + high) / 2), low, high, at=side
-        )
+        gaps = np.round(gaps, STL_DECIMALS)
+        yield part.figure("pocket_gap", farthest(gaps, (low + high) / 2), low, high, at=side)
     depths = _rim_z(part) - front_z(part, floor_points(part))
     yield part.near("pocket_depth", depths, stack.pcb_mm, DEPTH_MM)
 
