@@ -12,6 +12,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design, Panel
 from lumitip_fab.design.least_size import is_too_small
+from lumitip_fab.docs.bill import electronics
 from lumitip_fab.docs.boards import ordering
 from lumitip_fab.docs.spec import outside
 from lumitip_fab.errors import InputError
@@ -170,3 +171,13 @@ def test_a_panel_that_no_fab_assembles_is_refused(inputs: dict[str, Input], vary
     config = with_limits(vary(inputs["published"], RAILS), most_mm=(90.0, 90.0))
     with pytest.raises(InputError, match=r"the panel of the receiver board would be 103\.6 x"):
         derive(config)
+
+
+@pytest.mark.parametrize(("panel", "said"), [("none", True), ("rails", False)])
+def test_the_bill_says_where_placing_takes_panels(
+    panel: str, said: bool, inputs: dict[str, Input], vary: Any
+) -> None:
+    design = derive(vary(inputs["published"], {"board.panel": panel}))
+    lines = electronics(design, Files(Path(), {}))
+    (placing,) = [line for line in lines if line.item == "placing and soldering"]
+    assert ("on panels alone: board.panel" in placing.where) == said

@@ -8,6 +8,7 @@ from dataclasses import asdict
 
 from lumitip_fab.design import Bought, Design, Purchase
 from lumitip_fab.design.cabling import awg
+from lumitip_fab.design.least_size import too_small
 from lumitip_fab.design.making import Filament
 from lumitip_fab.design.mould import printed_times
 from lumitip_fab.design.print_time import print_seconds
@@ -68,7 +69,10 @@ def electronics(design: Design, files: Files) -> Iterator[Bought]:
         each = purchase.bare_board_each(box)
         size = f"{box.width_mm:g} x {box.length_mm:g} mm"
         yield Bought("boards", f"{name} board", "", size, "bare", 1, each, pack="bare board")
-    item, where_text = "placing and soldering", "parts that a PCB fab mounts"
+    where_text = "parts that a PCB fab mounts"
+    if any(too_small(design)):
+        where_text += "; boards too small for it on panels alone: board.panel"
+    item = "placing and soldering"
     yield Bought("boards", item, "", "", where_text, placed, purchase.placing_each)
 
 
