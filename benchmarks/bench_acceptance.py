@@ -17,6 +17,7 @@ from random import Random
 
 from acceptance.confirm import Verdict, confirm
 from acceptance.generator import Design, design
+from acceptance.parts import BASE, DEFAULT
 from acceptance.trial import Trial, build_file, derive_file, design_folder
 from common import Goals
 
@@ -30,7 +31,7 @@ def main() -> int:
     # New processes, so that none has the locks of another one's threads.
     context = multiprocessing.get_context("spawn")
     with design_folder() as folder, ProcessPoolExecutor(options.jobs, mp_context=context) as pool:
-        designs = [design(options.seed, i) for i in range(options.count)]
+        designs = [design(options.seed, i, options.base) for i in range(options.count)]
         files = [_write(folder, drawn) for drawn in designs]
         derived = list(zip(designs, pool.map(derive_file, files, chunksize=8), strict=True))
         _print_kinds(derived)
@@ -65,6 +66,9 @@ def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=500, help="designs to derive")
     parser.add_argument("--seed", type=int, default=1, help="another seed draws other designs")
+    parser.add_argument(
+        "--base", choices=(BASE, DEFAULT), default=BASE, help="preset that most of them extend"
+    )
     parser.add_argument("--build", type=int, default=60, help="accepted designs to build")
     parser.add_argument(
         "--search",

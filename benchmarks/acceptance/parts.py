@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 DESIGN = Path(__file__).parents[2] / "design"
-BASE = "published"
+BASE, DEFAULT = "published", "fingertip"
 Table = dict[str, Any]
 
 
@@ -16,10 +16,15 @@ def entries(kind: str) -> Table:
     return tomllib.loads((DESIGN / "parts" / f"{kind}.toml").read_text(encoding="utf-8"))
 
 
+def preset_file(name: str) -> str:
+    """The file of a preset in the folder of designs; the default's is beside the others."""
+    return f"{name}.toml" if name == DEFAULT else f"presets/{name}.toml"
+
+
 @cache
 def preset(name: str) -> Table:
     """A preset with all that it extends, its fields by name: `{"grid.pitch_mm": 6.0, …}`."""
-    table = tomllib.loads((DESIGN / "presets" / f"{name}.toml").read_text(encoding="utf-8"))
+    table = tomllib.loads((DESIGN / preset_file(name)).read_text(encoding="utf-8"))
     base = table.pop("extends", None)
     values = dict(preset(Path(base).stem)) if base else {}
     for key, value in table.items():

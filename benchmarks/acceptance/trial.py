@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from acceptance.parts import DESIGN
+from acceptance.parts import DEFAULT, DESIGN
 
 
 @dataclass(frozen=True)
@@ -45,9 +45,10 @@ def design_folder() -> Iterator[Path]:
 
 
 def fill(folder: Path) -> None:
-    """Copy presets and catalogue into a folder."""
+    """Copy presets, default and catalogue into a folder."""
     for part in ("parts", "presets"):
         shutil.copytree(DESIGN / part, folder / part)
+    shutil.copy(DESIGN / f"{DEFAULT}.toml", folder)
 
 
 def derive_file(file: Path) -> Trial:

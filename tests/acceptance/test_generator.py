@@ -2,6 +2,7 @@
 
 import tomllib
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 
@@ -9,7 +10,8 @@ from acceptance.generator import COUNTS, Design, design
 from acceptance.grids import LEAST_CELLS, MOST_CELLS, USUAL_CELLS
 from acceptance.kinds import KINDS
 from acceptance.limits import Values, crossed
-from acceptance.parts import entries, preset
+from acceptance.parts import BASE, DEFAULT, entries, preset, preset_file
+from acceptance.trial import derive_file, fill
 
 DEPENDENT = {
     "emitter.current_ma",
@@ -35,14 +37,15 @@ DEPENDENT = {
 }
 
 
-@pytest.fixture(scope="module")
-def designs() -> list[Design]:
-    return [design(3, i) for i in range(400)]
+@pytest.fixture(scope="module", params=[BASE, DEFAULT])
+def designs(request: pytest.FixtureRequest) -> list[Design]:
+    return [design(3, i, request.param) for i in range(400)]
 
 
 def test_a_seed_and_an_index_make_the_same_file_again(designs: list[Design]) -> None:
-    assert [design(3, i).text for i in range(40)] == [d.text for d in designs[:40]]
-    assert {design(4, i).text.split("\n", 2)[2] for i in range(40)} != {
+    (usual,) = {d.base for d in designs if "preset" not in d.kinds}
+    assert [design(3, i, usual).text for i in range(40)] == [d.text for d in designs[:40]]
+    assert {design(4, i, usual).text.split("\n", 2)[2] for i in range(40)} != {
         d.text.split("\n", 2)[2] for d in designs[:40]
     }
 
@@ -50,7 +53,7 @@ def test_a_seed_and_an_index_make_the_same_file_again(designs: list[Design]) -> 
 def test_a_file_says_what_its_edits_are_and_nothing_else(designs: list[Design]) -> None:
     for drawn in designs:
         table = tomllib.loads(drawn.text)
-        assert table.pop("extends") == f"presets/{drawn.base}.toml"
+        assert table.pop("extends") == preset_file(drawn.base)
         fields = {k: v for k, v in table.items() if not isinstance(v, dict)}
         for section, values in table.items():
             if isinstance(values, dict):
@@ -65,7 +68,7 @@ def test_each_edit_changes_something_that_does_not_follow_from_others(
         assert len(drawn.kinds) in COUNTS
         assert not DEPENDENT & set(drawn.edits)
         assert all(value != preset(drawn.base)[f] for f, value in drawn.edits.items())
-        assert len(drawn.edits) >= len(drawn.kinds) - (drawn.base != "published")
+        assert len(drawn.edits) >= len(drawn.kinds) - ("preset" in drawn.kinds)
 
 
 def test_every_kind_is_drawn_and_no_value_leaves_its_range(designs: list[Design]) -> None:
@@ -152,3 +155,17 @@ def test_every_entry_of_the_kinds_that_a_user_chooses_from_is_drawn() -> None:
         drawn_names = {d.edits[field] for d in drawn if field in d.edits}
         used = (drawn_names | {preset("published")[field]}) - {"auto"}
         assert used == set(entries(kind)) - left_out, field
+
+
+@pytest.mark.slow
+def test_edits_of_the_default_design_are_accepted(tmp_path: Path) -> None:
+    """A switch of the LEDs that another edit leaves no room for, too, is no reason to refuse."""
+    fill(tmp_path)
+    refused = {}
+    for drawn in (design(11, i, DEFAULT) for i in range(30)):
+        file = tmp_path / f"{drawn.name}.toml"
+        file.write_text(drawn.text, encoding="utf-8")
+        trial = derive_file(file)
+        if not trial.accepted:
+            refused[drawn.kinds] = trial
+    assert not refused

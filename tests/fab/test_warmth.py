@@ -1,5 +1,6 @@
 """The heat of a finger's own LEDs, against a correlation of another source."""
 
+import math
 import re
 import shutil
 from dataclasses import replace
@@ -61,19 +62,42 @@ def test_leds_that_are_switched_heat_for_their_share_of_a_frame(design: Design) 
 def test_what_its_own_heat_softens_is_refused_with_what_it_bears(
     design_dir: Path, tmp_path: Path
 ) -> None:
-    always_on = FOR + "[emitter]\nswitch = 'none'\n"
+    always_on = FOR + "[emitter]\nswitch = 'none'\ncurrent_ma = {}\n"
     with pytest.raises(InputError, match="slow two-part epoxy withstands 45") as refused:
-        of_lines(design_dir, tmp_path / "hot", always_on)
+        of_lines(design_dir, tmp_path / "hot", always_on.format(19.2))
     (problem,) = refused.value.problems
     assert problem.field == "emitter.max_heat_w"
     (most_w,) = re.findall(r"Choose ([\d.]+) or less", problem.message)
-    design = of_lines(design_dir, tmp_path / "cooler", f"{always_on}max_heat_w = {most_w}\n")
+    most_ma = math.floor(190 * float(most_w) / 1.39) / 10
+    design = of_lines(design_dir, tmp_path / "cooler", always_on.format(most_ma))
+    assert design.heat_steps["use"].temperature_c == 45
+    assert design.electrical.heat_w <= float(most_w)
+
+
+def test_an_automatic_current_falls_with_the_pull_up_that_keeps_the_range(
+    design_dir: Path, tmp_path: Path
+) -> None:
+    design = of_lines(design_dir, tmp_path, FOR + "[emitter]\nswitch = 'none'\n")
+    usual = derive(load(design_dir / "fingertip.toml"))
+    assert design.electrical.ambient is None
     assert design.heat_steps["use"].temperature_c <= 45
-    assert 0.8 * float(most_w) < design.electrical.heat_w <= float(most_w)
+    current_ma, full_ma = (d.electrical.strings.target_ma for d in (design, usual))
+    assert 0.9 * full_ma < current_ma < full_ma
+    (choice,) = [c for c in design.choices if c.field == "receiver.pull_up_ohm"]
+    (set_ma,) = re.findall(r"uses nearly all of its range at ([\d.]+) mA", choice.reason)
+    assert float(set_ma) == pytest.approx(current_ma, abs=0.2)
+
+
+def test_a_switch_without_use_is_left_out_and_the_current_falls(
+    design_dir: Path, tmp_path: Path
+) -> None:
+    design = of_lines(design_dir, tmp_path, FOR + "[receiver]\nload = 'shared'\n")
+    assert design.electrical.ambient is None
+    assert design.heat_steps["use"].temperature_c <= 45
 
 
 def test_a_weaker_glue_is_refused_sooner(design_dir: Path, tmp_path: Path) -> None:
-    lines = "[emitter]\nswitch = 'none'\nmax_heat_w = 1.2\n[backing]\nglue = '{}'\n"
+    lines = "[emitter]\nswitch = 'none'\ncurrent_ma = 17.5\n[backing]\nglue = '{}'\n"
     slow = of_lines(design_dir, tmp_path / "slow", FOR + lines.format("epoxy"))
     assert slow.heat_steps["use"].temperature_c <= 45
     with pytest.raises(InputError, match="fast two-part epoxy withstands 40"):

@@ -119,11 +119,11 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     panels = derive_panels(config, plan.board.box, (*breakout, *flange), faults)
     circuit = wiring.build_wiring(config, strings, muxing)
     figures = derive_electrical(config, strings, muxing, circuit.pull_ups, faults)
-    heat = derive_heat(config, slicing, casting, silhouette, figures, faults)
     feed = derive_feed(config, faults)
     joints = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
     cabling = derive_cabling(config, joints, silhouette, coupling, circuit, figures, faults)
     faults.stop()
+    heat = derive_heat(config, slicing, casting, silhouette, figures, faults)
     strength = derive_strength(config, body, optics, faults)
     faults.stop()
     fingers = plan.emitter, plan.receiver

@@ -47,7 +47,7 @@ class _Reasons:
 
     def moved(self, change: Change, message: str) -> None:
         text = message.partition(". Override it in")[0].removesuffix(".")
-        self.of[change.field] = f"otherwise {text}"
+        self.of |= {change.field: f"otherwise {text}", **change.also}
 
     def choices(self, config: Input) -> tuple[Choice, ...]:
         """Every automatic field in the order of the file, with its value and reason."""

@@ -1,5 +1,6 @@
 """Search for the smallest changes that mend every broken rule."""
 
+import dataclasses
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -11,7 +12,7 @@ from lumitip_fab.config.automatic import automatic_fields
 from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.config.parts import NONE, OPTIONAL
 from lumitip_fab.derive.auto.judge import Rule, Verdict, judge_with
-from lumitip_fab.derive.auto.strings import lowest_ma
+from lumitip_fab.derive.auto.strings import dimmer, lowest_ma
 from lumitip_fab.derive.boards.plug_in import least_inrush_ohm
 from lumitip_fab.derive.finger.stack import mask_mm
 from lumitip_fab.derive.wiring.ratings import sold_from, sold_ohm
@@ -31,6 +32,8 @@ class Change:
     field: str
     value: Any
     verdict: Verdict
+    also: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    """Reasons of other automatic values that change with it, by field."""
 
 
 def smallest_number(
@@ -52,6 +55,17 @@ def first_of(before: Verdict, rule: Rule, field: str, values: Iterator[Any]) -> 
         verdict = judge_with(before.config, {field: value})
         if verdict and verdict.mends(rule, before):
             return Change(field, value, verdict)
+    return None
+
+
+def _dimmed(before: Verdict, rule: Rule) -> Change | None:
+    """The greatest current, with its pull-up, that mends a rule."""
+    for values in dimmer(before.config):
+        verdict = judge_with(before.config, {name: value for name, (value, _) in values.items()})
+        if verdict and verdict.mends(rule, before):
+            current = "emitter.current_ma"
+            also = {name: reason for name, (_, reason) in values.items() if name != current}
+            return Change(current, values[current][0], verdict, also)
     return None
 
 
@@ -196,9 +210,12 @@ def change_of(now: Verdict, rule: Rule, field: str, fineness: int = COARSE) -> C
         return first_of(now, rule, field, iter([sold_ohm(now.config.value(field))]))
     if field == "stack.film_mm":
         return first_of(now, rule, field, iter([mask_mm(now.config)[0]]))
-    if automatic.step:
-        return smallest_number(now, rule, field, automatic.step, fineness)
-    return None
+    if not automatic.step:
+        return None
+    change = smallest_number(now, rule, field, automatic.step, fineness)
+    if change is None and field == "emitter.current_ma":
+        return _dimmed(now, rule)
+    return change
 
 
 def _others(values: Iterable[str], now: Verdict, field: str) -> list[str]:

@@ -153,6 +153,19 @@ def _currents(config: Input) -> Iterator[float]:
         current *= CURRENT_STEP
 
 
+def dimmer(config: Input) -> Iterator[dict[str, tuple[Value, str]]]:
+    """Lower currents in turn, each with the pull-up with which a bare cell keeps its range: values
+    with their reasons, by field. None where the file sets one of them."""
+    current, pull_up = "emitter.current_ma", "receiver.pull_up_ohm"
+    if not {current, pull_up} <= config.automatic:
+        return
+    emitter = config.parameters.emitter
+    for lower in (ma for ma in _currents(config) if ma < emitter.current_ma):
+        dimmed = config.with_values({current: lower})
+        proposed = _proposals(dimmed, emitter.string_leds)
+        yield {name: (value, why) for name, value, why in proposed if name in {current, pull_up}}
+
+
 def least_current_ma(config: Input) -> float:
     """LED current with which a bare cell uses nearly all of its range."""
     automatic = "receiver.pull_up_ohm" in config.automatic
