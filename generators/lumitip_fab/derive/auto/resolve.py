@@ -94,20 +94,17 @@ def _settled(end: Verdict, reasons: _Reasons) -> Verdict:
 def _thinner_lip(end: Verdict, reasons: _Reasons) -> Verdict:
     """The same design, with a thinner automatic lip, or none, where there is no room for it."""
     for lip_mm in THINNER_LIPS_MM:
-        refusal = _refused_lip(end)
-        if not refusal:
+        if LIP not in end.config.automatic or end.design is None or end.design.tip.slots:
             return end
-        reasons.of.setdefault(LIP, "otherwise it " + refusal.partition("; 0 or")[0])
+        reasons.of.setdefault(LIP, "otherwise it " + _refusal_of_lip(end).partition("; 0 or")[0])
         end = judge(end.config.with_values({LIP: lip_mm}))
     return end
 
 
-def _refused_lip(end: Verdict) -> str:
-    """The words in which an automatic lip would be refused if it were written; empty if not."""
-    if LIP not in end.config.automatic:
-        return ""
+def _refusal_of_lip(end: Verdict) -> str:
+    """The words in which an automatic lip without room would be refused if it were written."""
     written = judge(replace(end.config, automatic=end.config.automatic - {LIP}))
-    return next((problem.message for problem in written.problems if problem.field == LIP), "")
+    return next(problem.message for problem in written.problems if problem.field == LIP)
 
 
 def accepted_with(config: Input, values: Mapping[str, Any]) -> bool:
