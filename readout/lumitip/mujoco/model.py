@@ -93,7 +93,8 @@ def open_fingers(
     Args:
         model: of `fingers`.
         data: its state.
-        opening_mm: skin to skin (mm).
+        opening_mm: skin to skin where they touch first (mm). At the cells, fingers of a URDF that
+            lean are farther apart, and the light is that of the gap there.
         prefix: with which `fingers` was attached to the model.
 
     Raises:
