@@ -13,6 +13,7 @@
 namespace lumitip {
 
 constexpr uint16_t FULL_SCALE = (1u << ADC_BITS) - 1;
+constexpr uint16_t CEILING = uint32_t{FULL_SCALE} * LUMITIP_CEILING / 1000;  // of a dark cell
 constexpr uint16_t BRIGHT_SHARE = 4;  // ambient light leaves less than a quarter of a cell's range
 
 // The pull-up charges the line until half a step of the bits sent is left: R C ln(2^(BITS + 1)).
@@ -68,7 +69,8 @@ class Scanner {
     bright_ = false;
     for (uint16_t cell = 0; cell < CELLS; ++cell) {
       bright_ = bright_ || unlit[cell] < FULL_SCALE / BRIGHT_SHARE;
-      const uint32_t code = uint32_t{codes[cell]} + (FULL_SCALE - unlit[cell]);
+      const uint16_t lowered = unlit[cell] < CEILING ? CEILING - unlit[cell] : 0;
+      const uint32_t code = uint32_t{codes[cell]} + lowered;
       codes[cell] = static_cast<uint16_t>(code < FULL_SCALE ? code : FULL_SCALE);
     }
   }

@@ -38,6 +38,13 @@
 #ifndef LUMITIP_AMBIENT
 #define LUMITIP_AMBIENT 1  // 0: leaves the ambient light in the codes; the LEDs stay on
 #endif
+#ifndef LUMITIP_CEILING
+#ifdef ARDUINO_ARCH_ESP32
+#define LUMITIP_CEILING 939  // its converter ends near 3.1 V of 3.3
+#else
+#define LUMITIP_CEILING 1000  // greatest reading, in thousandths of the full scale
+#endif
+#endif
 #ifndef LUMITIP_EMITTER_US
 #define LUMITIP_EMITTER_US 200  // from switching the LEDs until light and photodetectors are steady
 #endif
@@ -53,12 +60,13 @@ constexpr int32_t CONVERSION_US = LUMITIP_CONVERSION_US;
 constexpr uint8_t SETTLE_FACTOR = LUMITIP_SETTLE_FACTOR;
 constexpr int EMITTER_PIN = LUMITIP_EMITTER_PIN;
 constexpr uint32_t EMITTER_US = LUMITIP_EMITTER_US;
-constexpr uint8_t FIRMWARE_VERSION[3] = {1, 2, 0};
+constexpr uint8_t FIRMWARE_VERSION[3] = {1, 2, 1};
 
 static_assert(LUMITIP_PERIOD_US >= 100 && LUMITIP_PERIOD_US <= 65535, "PERIOD_US: 100 to 65535");
 static_assert(LUMITIP_RADIO_US >= 0 && LUMITIP_RADIO_US <= 65535, "RADIO_US: 0 to 65535");
 static_assert(LUMITIP_CONVERSION_US >= 1 && LUMITIP_CONVERSION_US <= 1000,
               "CONVERSION_US: 1 to 1000");
+static_assert(LUMITIP_CEILING >= 500 && LUMITIP_CEILING <= 1000, "CEILING: 500 to 1000");
 static_assert(LUMITIP_SAMPLES >= 1 && LUMITIP_SAMPLES <= 64, "SAMPLES: 1 to 64");
 static_assert(BITS == 8 || BITS == 10 || BITS == 12, "BITS: 8, 10 or 12");
 

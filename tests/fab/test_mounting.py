@@ -293,3 +293,9 @@ def test_other_grippers_have_no_word_of_the_flange(
         texts.append((out / file).read_text(encoding="utf-8"))
     found = re.findall(r".{0,40}(?:flange|Robotiq).{0,40}", "\n".join(texts), re.IGNORECASE)
     assert found == []
+
+
+def test_a_supply_that_the_coupling_does_not_carry_is_asked_for_first(written: Written) -> None:
+    asked = "entry says 24 V for the supply contact, and this flange takes 12 V."
+    assert asked in words(work(written({}, "asymmetric")))
+    assert "for the supply contact" not in words(work(written()))

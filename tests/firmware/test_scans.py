@@ -15,15 +15,23 @@ from lumitip_fab.paths import firmware_sources
 pytestmark = pytest.mark.slow
 
 
+@pytest.mark.parametrize(("defines", "ceiling"), [((), 4095), (("-DLUMITIP_CEILING=939",), 3845)])
 def test_several_conversions_and_ambient_light(
-    host_program: Callable[..., Path], run: Callable[..., Any], sketch: Callable[[str], Path]
+    defines: tuple[str, ...],
+    ceiling: int,
+    host_program: Callable[..., Path],
+    run: Callable[..., Any],
+    sketch: Callable[[str], Path],
 ) -> None:
-    done = run(str(host_program("scans", "published")))
+    """What ambient light takes is given back, up to the converter's greatest reading; a cell
+    without it keeps its code."""
+    done = run(str(host_program("scans", "published", *defines)))
     assert done.returncode == 0, done.stderr
-    mean, lit, bright, counts, _ = done.stdout.splitlines()
+    mean, lit, unlit, bright, counts, _ = done.stdout.splitlines()
     layout = Layout.load(sketch("published").parent / "layout.json")
     assert set(mean.split()) == {"102"}  # 101.5, rounded
-    assert lit.split() == [str(4095 - 1000 - 17 * mux) for mux in layout.mux.tolist()]
+    assert lit.split() == [str(ceiling - 1000 - 17 * mux) for mux in layout.mux.tolist()]
+    assert unlit.split() == [str(4095 - 1000 - 17 * mux) for mux in layout.mux.tolist()]
     assert bright.split() == ["0", "0", "1"], "ambient light of one, two and over three quarters"
     assert counts.split() == ["7", "8", "0"]
 

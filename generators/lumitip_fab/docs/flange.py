@@ -60,6 +60,15 @@ def _looked(design: Design) -> Iterator[str]:
     yield _text("switched_off")
     yield _text("taken_off")
     yield _text("confirmed", volts=_volts(_raw(design)))
+    for carried in _other_supplies(design):
+        yield _text("other_supply", carried=carried, volts=_volts(_raw(design)))
+
+
+def _other_supplies(design: Design) -> Iterator[str]:
+    """What the coupling's supply contacts carry, where it is not the voltage of this design."""
+    contacts = [contact for flange in design.flanges for contact in flange.contacts]
+    carried = dict.fromkeys(_volts(c.carries) for c in contacts if c.kind == "supply")
+    yield from (volts for volts in carried if volts != _volts(_raw(design)))
 
 
 def _needs(design: Design) -> Iterator[str]:

@@ -12,10 +12,12 @@ struct Noisy : BenchBoard {
 struct Lit : BenchBoard {
   bool lit = true;
   uint16_t ambient = 300;
-  // Of the full scale ambient light takes some, the emitter 1000 and 17 more for each channel.
+  // Of the full scale ambient light takes some, the emitter 1000 and 17 more for each channel. The
+  // converter tells no more than its greatest reading.
   uint16_t read(uint16_t mux) {
     const uint16_t through = lit ? 1000 + static_cast<uint16_t>(17 * mux) : 0;
-    return static_cast<uint16_t>(lumitip::FULL_SCALE - ambient - through);
+    const uint16_t code = static_cast<uint16_t>(lumitip::FULL_SCALE - ambient - through);
+    return code < lumitip::CEILING ? code : lumitip::CEILING;
   }
 };
 
@@ -38,6 +40,9 @@ int main() {
   lumitip::Scanner<Lit> scanner(board);
   scanner.begin();
   const auto light = [&](bool on) { board.lit = on; };
+  scanner.scan(codes, light);
+  print(codes);
+  board.ambient = 0;
   scanner.scan(codes, light);
   print(codes);
   for (unsigned quarter = 1; quarter <= 3; ++quarter) {
