@@ -124,7 +124,7 @@ def test_ties_close_the_arms_from_outside(written: Written, preset: str, robot: 
 
 def test_another_supply_is_named_by_its_voltage(written: Written) -> None:
     step = steps(written({"supply.voltage_v": 12.0}))
-    assert "Its 12 V are on J3.7 and J3.8" in step and "24 V" not in step
+    assert "Its 12 V are on J3.7 and J3.8" in step and "Its 24 V" not in step
 
 
 LINES = ("GND", "CASING", "Von", "485+", "485-", "3V3_out", "485GND")
