@@ -85,10 +85,9 @@ class AsyncFingertip:
     async def wait_latest(self, timeout_s: float | None = 1.0) -> Frame:
         """As `Fingertip.wait_latest`; tasks that call it share the frames, the first one too."""
         timeout_s = seconds(timeout_s, "timeout_s")
+        self._handed_out = self.fingertip._hub.pass_over(self._handed_out, timeout_s)
         if self._newest is None:
             self._newest = _AsyncQueue(self.fingertip._hub, 1, counted=False)
-            if self._handed_out is None:
-                self._handed_out = self.fingertip._hub.outdated(timeout_s)
             newest = self.fingertip.latest()
             if newest is not None and newest is not self._handed_out:
                 self._handed_out = newest

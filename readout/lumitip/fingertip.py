@@ -40,13 +40,19 @@ _log = logging.getLogger(__name__)
 class Fingertip:
     """An open fingertip; see `Fingertip.open`. All methods and properties are thread-safe."""
 
-    def __init__(self, hub: Hub, buffer: int, calibrated: bool) -> None:
+    def __init__(self, hub: Hub, buffer: int, calibrated: bool, timeout_s: float | None) -> None:
+        """Start `hub`, with the calibration in force before its first frame."""
         self._hub = hub
         self._buffer = arguments.count(buffer, "buffer")
         self._reading = threading.Lock()
         self._queue: FrameQueue | None = None
         self._handed_out = threading.local()
-        self._references = References(hub, calibrated)
+        self._references: References
+
+        def connected() -> None:
+            self._references = References(hub, calibrated)
+
+        hub.start(timeout_s, connected)
 
     @classmethod
     def open(
@@ -84,13 +90,7 @@ class Fingertip:
         check_options(unknown)
         known = None if layout is None else arguments.layout_or_path(layout)
         link = open_link(url, known, any_design, arguments.seconds(timeout))
-        hub = Hub(link, any_design, on_event)
-        hub.start(timeout)
-        try:
-            return cls(hub, buffer, calibrated)
-        except BaseException:
-            hub.close()
-            raise
+        return cls(Hub(link, any_design, on_event), buffer, calibrated, timeout)
 
     def read(self, timeout: float | None = 1.0) -> Frame:
         """The next frame, in order, within `timeout` (s); `None` waits without limit.
@@ -112,6 +112,7 @@ class Fingertip:
         """The newest frame, once it is newer than the last that this thread got from `read`,
         `latest` or `wait_latest`; waits up to `timeout_s` (s), `None` without limit. A thread that
         got none yet takes none older than `timeout_s`, and none from before while the link is cut.
+        Later frames are of any age; from before a cut of the link, at most `timeout_s` old.
         For control loops: nothing queues, a slow loop skips frames. Each thread gets the newest.
 
         Raises:
@@ -122,10 +123,9 @@ class Fingertip:
         return frame
 
     def _pass_over(self, max_age_s: float | None) -> Frame | None:
-        """Count the newest frame as handed out if this thread got none yet and it is older than
-        `max_age_s` (s), or the link is cut. Returns the last frame that was handed out."""
+        """Count the newest frame as handed out if it is too old. Returns the last such frame."""
         last: Frame | None = getattr(self._handed_out, "frame", None)
-        self._handed_out.frame = last = last or self._hub.outdated(max_age_s)
+        self._handed_out.frame = last = self._hub.pass_over(last, max_age_s)
         return last
 
     @overload

@@ -5,14 +5,24 @@ import math
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 from lumitip.arguments import function, seconds
-from lumitip.errors import EndOfRecording, FingertipClosed, LinkError, LinkTimeout, StaleFrame
-from lumitip.frame import Frame, RecordedFrame
-from lumitip.links.base import Arrival, Link, LinkEvent, Prepares, Report
+from lumitip.errors import (
+    EndOfRecording,
+    FingertipClosed,
+    LinkError,
+    LinkTimeout,
+    LumitipError,
+    StaleFrame,
+)
+from lumitip.frame import Frame
+from lumitip.links.base import Arrival, Link, LinkEvent, Report
 from lumitip.session.drift import Drift, DriftWatch
 from lumitip.session.intake import Intake, Source
+from lumitip.session.newest import Newest
 from lumitip.session.queues import FrameQueue
+from lumitip.session.silence import no_connection, why_silent
 from lumitip.session.stats import Counter, Stats
 
 _log = logging.getLogger(__name__)
@@ -39,29 +49,41 @@ class Hub:
         self._lock = threading.RLock()
         self._changed = threading.Condition(self._lock)
         self._queues: tuple[FrameQueue, ...] = ()
-        self._newest: tuple[Frame, float] | None = None  # and when it was read, by our clock (s)
+        self._newest: Newest | None = None
         self._wanted = False  # whether the newest frame was asked for
         self._connected = False
         self._was_connected = False
         self._over: LinkError | None = None
+        self._at_connection: Callable[[], None] | None = None
+        self._refused: LumitipError | None = None
 
-    def start(self, timeout_s: float | None) -> None:
+    def start(
+        self, timeout_s: float | None, at_connection: Callable[[], None] | None = None
+    ) -> None:
         """Start the link and wait until it is connected; `None` waits without limit.
+
+        Args:
+            timeout_s: longest wait (s).
+            at_connection: called on the link's thread at the first connection, before any frame:
+                the name of the device is final then.
 
         Raises:
             ArgumentError: if the time is wrong; nothing is started.
             LinkTimeout: if it did not connect in time; the link is stopped.
             LinkError: why it did not connect; the link is stopped.
+            LumitipError: that of `at_connection`; the link is stopped.
         """
-        timeout_s = seconds(timeout_s)
+        timeout_s, self._at_connection = seconds(timeout_s), at_connection
         self.link.start(self._deliver, self._report)
         until = math.inf if timeout_s is None else time.monotonic() + timeout_s
         try:
             with self._changed:
                 while not (self._was_connected or self._over) and time.monotonic() < until:
                     self._changed.wait(min(until - time.monotonic(), threading.TIMEOUT_MAX))
+                if self._refused:
+                    raise self._refused
                 if not self._was_connected:
-                    raise self._over or self._too_late(timeout_s or 0)
+                    raise self._over or no_connection(self.link, timeout_s or 0)
         except BaseException as failed:  # Ctrl-C too
             self.close(failed if isinstance(failed, LinkError) else None)
             raise
@@ -84,7 +106,7 @@ class Hub:
     @property
     def latest(self) -> Frame | None:
         """The newest frame."""
-        return self._newest[0] if self._newest else None
+        return self._newest.frame if self._newest else None
 
     @property
     def stats(self) -> Stats:
@@ -164,18 +186,17 @@ class Hub:
                 return frame
         raise self.silent(timeout_s)
 
-    def outdated(self, max_age_s: float | None) -> Frame | None:
-        """The newest frame if it is older than this (s) or the link is not connected, else `None`:
-        a reader that got none yet must not take it for one of now.
+    def pass_over(self, last: Frame | None, max_age_s: float | None) -> Frame | None:
+        """The newest frame if a reader must not take it for one of now, else `last`, the last frame
+        that the reader got; see `Newest.is_outdated`.
 
         Raises:
             ArgumentError: if the time is wrong.
         """
         max_age_s, newest = seconds(max_age_s, "timeout_s"), self._newest
-        if newest is None:
-            return None
-        too_old = max_age_s is not None and time.monotonic() - newest[1] > max_age_s
-        return newest[0] if too_old or not self._connected else None
+        if newest and newest.is_outdated(last is None, self._connected, max_age_s):
+            return newest.frame
+        return last
 
     def fresh(self, max_age_s: float | None = None) -> Frame | None:
         """The newest frame, at most `max_age_s` old (s); `None`: of any age, and before the first.
@@ -190,11 +211,11 @@ class Hub:
         if self._over and not isinstance(self._over, EndOfRecording):
             raise self._over.with_traceback(None)
         if max_age_s is not None:
-            age_s = time.monotonic() - newest[1] if newest else math.inf
+            age_s = newest.age_s if newest else math.inf
             if age_s > max_age_s:
                 found = f"the newest frame is {age_s:.3f} s old" if newest else "no frame came yet"
                 raise StaleFrame(f"{found}, max_age_s is {max_age_s:g}: {self._why_silent()}")
-        return newest[0] if newest else None
+        return newest.frame if newest else None
 
     def _ask(self) -> None:
         """Let a recording that waits for a reader go on."""
@@ -207,19 +228,9 @@ class Hub:
         """The error when no frame came in time."""
         return LinkTimeout(f"no frame in {timeout_s or 0:.3g} s: {self._why_silent()}")
 
-    def _too_late(self, timeout_s: float) -> LinkTimeout:
-        why = "is the device switched on and in reach? `lumitip scan` lists devices"
-        if isinstance(self.link, Prepares):
-            why = self.link.why_late
-        return LinkTimeout(f"no connection after {timeout_s:g} s: {why}")
-
     def _why_silent(self) -> str:
-        fault = self.intake.last_fault
-        if not self._connected:
-            return f"the connection to {self.link.device_id} is lost; reconnecting"
-        if fault:
-            return f"{self.stats.unreadable} packets could not be decoded, the last: {fault.why}"
-        return f"{self.link.device_id} is connected but sends nothing; is its firmware running?"
+        device_id, unreadable = self.link.device_id, self.stats.unreadable
+        return why_silent(device_id, self._connected, unreadable, self.intake.last_fault)
 
     def _deliver(self, arrival: Arrival) -> None:
         if self._over:
@@ -235,10 +246,8 @@ class Hub:
         if arrival.patient:
             self._wait_for_reader()
         last = frames[-1]
-        recorded = isinstance(arrival.content, RecordedFrame)
         with self._changed:
-            as_arrived = recorded or last.t_device is None
-            self._newest = last, arrival.t_host if as_arrived else min(last.t, last.t_host)
+            self._newest = Newest.of(last, arrival)
             self._wanted = False
             self._changed.notify_all()
         for queue in self._queues:
@@ -259,6 +268,7 @@ class Hub:
             self._now_connected()
         elif event.kind == "lost":
             self._connected = False
+            self._newest = self._newest and replace(self._newest, cut_off=True)
         elif event.kind in ("failed", "ended"):
             self._end(event.error or EndOfRecording(event.detail))
         if self._on_event:
@@ -271,6 +281,11 @@ class Hub:
         if self._was_connected:
             self._counter.add("reconnects")
             self.intake.reconnected()
+        elif self._at_connection:
+            try:
+                self._at_connection()
+            except LumitipError as error:
+                self._refused = error
         with self._changed:
             self._connected = self._was_connected = True
             self._changed.notify_all()

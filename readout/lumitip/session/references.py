@@ -21,7 +21,7 @@ class References:
     """The calibration of the frames of a hub.
 
     Args:
-        hub: started.
+        hub: connected.
         calibrated: begin with the saved calibration, or with that of the recording.
 
     Raises:

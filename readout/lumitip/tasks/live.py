@@ -74,8 +74,7 @@ class LiveTask(ThreadedLink):
     def open(self) -> Fingertip:
         """Start in real time; returns the fingertip that reads it."""
         hub = Hub(self, any_design=False, on_event=None)
-        hub.start(timeout_s=10.0)
-        return Fingertip(hub, _BUFFER, calibrated=True)
+        return Fingertip(hub, _BUFFER, calibrated=True, timeout_s=10.0)
 
     def command(self, command: Command) -> None:
         """Set the command; it holds until the next one. May be called from any thread.

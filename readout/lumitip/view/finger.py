@@ -122,8 +122,7 @@ class Finger:
         """A finger that replays a recording."""
         events = _Later()
         hub = Hub(player, any_design=True, on_event=events)
-        hub.start(timeout_s=5.0)
-        tip = Fingertip(hub, KEPT, calibrated=True)
+        tip = Fingertip(hub, KEPT, calibrated=True, timeout_s=5.0)
         return events.to(cls(url, tip, sinks, player, expected))
 
     def start(self, changed: Callable[[], None]) -> None:

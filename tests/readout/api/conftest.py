@@ -79,8 +79,7 @@ def open_feed(layout: Layout) -> Iterator[OpenFeed]:
     ) -> tuple[Fingertip, Feed]:
         feed = Feed(layout, device_id)
         hub = Hub(feed, any_design, on_event)
-        hub.start(1.0)
-        opened.append(Fingertip(hub, buffer, calibrated))
+        opened.append(Fingertip(hub, buffer, calibrated, timeout_s=1.0))
         return opened[-1], feed
 
     yield opener

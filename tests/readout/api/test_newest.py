@@ -143,6 +143,29 @@ def test_the_first_frame_of_a_thread_is_of_now(open_feed) -> None:
     assert len(got) > number and got[-1] != 500 % 251, "it waits for a new one"
 
 
+def test_a_frame_from_before_a_cut_is_not_one_of_now(open_feed) -> None:
+    tip, feed = open_feed()
+    feed.packet(0, t_host=time.monotonic() - 5.0)
+    assert tip.latest().seq == 0
+    feed.packet(1, t_host=time.monotonic() - 4.0)
+    assert tip.wait_latest(0.02).seq == 1, "a slow loop over a link that is not cut"
+    feed.packet(2, t_host=time.monotonic() - 3.0)
+    feed.report(LinkEvent("lost", "gone"))
+    with pytest.raises(LinkTimeout, match=r"no frame in 0\.02 s: the connection to feed is lost"):
+        tip.wait_latest(0.02)
+    feed.packet(3, t_host=time.monotonic() - 3.0)
+    feed.report(LinkEvent("lost", "gone"))
+    feed.report(LinkEvent("connected", "back"))
+    with pytest.raises(LinkTimeout, match=r"no frame in 0\.02 s: feed is connected"):
+        tip.wait_latest(0.02)
+    feed.packet(4, t_host=time.monotonic())
+    feed.report(LinkEvent("lost", "gone"))
+    assert tip.wait_latest(30.0).seq == 4, "younger than the timeout"
+    feed.packet(5, t_host=time.monotonic())
+    feed.report(LinkEvent("lost", "gone"))
+    assert tip._pass_over(None).seq == 5, "without a timeout nothing from before is young"
+
+
 def test_the_first_frame_of_a_coroutine_is_of_now(
     open_feed, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -156,6 +179,10 @@ def test_the_first_frame_of_a_coroutine_is_of_now(
                 await opened.wait_latest(0.02)
             feed.packet(500, t_host=time.monotonic())
             assert (await opened.wait_latest(30.0)).raw[0] == 500 % 251
+            feed.packet(501, t_host=time.monotonic() - 3.0)
+            feed.report(LinkEvent("lost", "gone"))
+            with pytest.raises(LinkTimeout, match="the connection to feed is lost"):
+                await opened.wait_latest(0.02)
 
     asyncio.run(main())
 

@@ -90,8 +90,7 @@ def still() -> Callable[..., Finger]:
 
     def make(layout: Layout, codes: np.ndarray, frames: int = 360_000) -> Finger:
         hub = Hub(Still(layout, codes, frames), any_design=False, on_event=None)
-        hub.start(5.0)
-        return Finger("still://", Fingertip(hub, 64, calibrated=False))
+        return Finger("still://", Fingertip(hub, 64, calibrated=False, timeout_s=5.0))
 
     return make
 
