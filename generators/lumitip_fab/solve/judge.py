@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lumitip.estimation.estimator import LEAST_CELLS
+from lumitip.estimation.estimate import LEAST_CELLS
 from lumitip.twin import Model
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive import resolve

@@ -18,6 +18,8 @@ from lumitip.processing.contact import Point
 from lumitip.values import one_line
 
 KINDS = ("edge", "cable", "corner")
+LEAST_CELLS = 4
+"""Fewer do not show a line."""
 MISFIT_COUNTS = 16.0
 """Root mean square misfit above which the shape does not explain the frame. Of the published
 frames the cloth edge has 9 counts; corner and cable have 18 to 29, since their shapes have neither
@@ -66,7 +68,8 @@ class Estimate:
     hardly shows the line, `"astray"` if the fit left the fingertip, `"unfinished"` if it did not
     converge, `"bright"` if there is more light beside the object than at the tare, `"ambiguous"` if
     another line explains the frame nearly as well, `"dead"` if it is without cells that read an
-    end of the scale: dead, or covered by another object."""
+    end of the scale: dead, or covered by another object; or if fewer than four cells have a value,
+    so that nothing is known of the grasp."""
     dark_side: str = ""
     """Side of the line on which the sheet of an edge or corner is, `"left"` or `"right"`."""
     vertex_mm: Point | None = None
@@ -119,7 +122,9 @@ def without_contact(kind: str, usable: NDArray[np.bool_]) -> Estimate:
     """The estimate of a frame without contrast in its usable cells, shape `(cells,)`."""
     nan = float("nan")
     lost = tuple(np.flatnonzero(~usable).tolist())
-    return Estimate(kind, nan, nan, nan, nan, nan, np.empty((0, 0)), nan, left_out=lost)
+    flags = ("dead",) if usable.size - len(lost) < LEAST_CELLS else ()
+    none = np.empty((0, 0))
+    return Estimate(kind, nan, nan, nan, nan, nan, none, nan, flags=flags, left_out=lost)
 
 
 def half_turn(offset_mm: float, angle_deg: float) -> tuple[float, float, bool]:

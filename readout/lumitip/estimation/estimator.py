@@ -12,6 +12,7 @@ from lumitip.errors import LumitipError
 from lumitip.estimation.estimate import (
     FAINT_CONTRAST,
     KINDS,
+    LEAST_CELLS,
     MISFIT_COUNTS,
     Estimate,
     contrast,
@@ -41,7 +42,6 @@ GAIN_ERROR = 0.01
 """Expected deviation of a cell's light from its empty grasp, as a share."""
 HUBER = 3.0
 """Standard deviations beyond which the loss grows linearly."""
-LEAST_CELLS = 4  # fewer do not show a line
 _BLURRED = np.array([np.radians(ANGLE_SD_DEG), OFFSET_SD_MM])
 _MOST_COUNTS = dict.fromkeys(KINDS, 0.5 * MISFIT_COUNTS) | {BENT: 0.25 * MISFIT_COUNTS}
 _END_COUNTS = 3.0  # from an end of the scale
@@ -137,7 +137,7 @@ class PoseEstimator:
 
         Args:
             values: calibrated values, 255 is full light, shape `(cells,)`; cells whose value is
-                not finite, or beyond a billion, are ignored.
+                not finite, or beyond a billion, are left out: fewer than four others show nothing.
             kind: `"edge"`, `"cable"` or `"corner"`; `None` decides.
 
         Raises:

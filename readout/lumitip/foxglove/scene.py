@@ -19,7 +19,8 @@ from mcap_protobuf.schema import register_schema
 from lumitip import arguments
 from lumitip.errors import LumitipError
 from lumitip.estimation import PoseEstimator
-from lumitip.estimation.estimator import DIAMETER_MM, LEAST_CELLS
+from lumitip.estimation.estimate import LEAST_CELLS
+from lumitip.estimation.estimator import DIAMETER_MM
 from lumitip.foxglove import drawings, numbers
 from lumitip.foxglove.panels import ROOT
 from lumitip.frame import RecordedFrame

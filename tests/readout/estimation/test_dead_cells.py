@@ -48,6 +48,24 @@ def test_cells_without_a_value_are_named(estimator: PoseEstimator, twin: Twin) -
     assert (estimator(values).kind, estimator(values).left_out) == ("none", (5,))
 
 
+@pytest.mark.parametrize("tracking", [False, True])
+def test_a_frame_with_too_few_values_is_no_empty_grasp(cells: Layout, tracking: bool) -> None:
+    estimate = PoseEstimator(cells, tracking=tracking)
+    every = tuple(range(len(cells)))
+    for lost in (np.nan, np.inf, -np.inf, 1e10):
+        for kind in (None, "edge"):
+            found = estimate(np.full(len(cells), lost), kind)
+            assert (found.kind, found.flags, found.left_out) == ("none", ("dead",), every)
+    for known, flags in ((3, ("dead",)), (4, ())):
+        for light, kind in ((255.0, "none"), (2.0, "covered")):
+            values = np.full(len(cells), np.nan)
+            values[:known] = light
+            found = estimate(values)
+            assert (found.kind, found.flags, found.left_out) == (kind, flags, every[known:])
+    found = estimate(np.full(len(cells), 255.0))
+    assert (found.kind, found.flags, found.left_out) == ("none", (), ())
+
+
 @pytest.mark.slow
 def test_a_tracker_goes_on_without_stuck_cells(twin: Twin) -> None:
     tracker = PoseEstimator(twin.layout, tracking=True)
