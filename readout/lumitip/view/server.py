@@ -8,6 +8,8 @@ origin of our own page, and other computers need the token.
 import ipaddress
 import socket
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import TracebackType
 from urllib.parse import parse_qsl, urlencode
 
@@ -64,7 +66,7 @@ class ViewServer:
         self.port: int = self._socket.getsockname()[1]
         self._host = host
         guard = Guard(make_app(registry), is_loopback(host), self.token, self.port)
-        self._server = uvicorn.Server(
+        self._server = _Server(
             uvicorn.Config(
                 guard,
                 log_level="warning",
@@ -84,7 +86,6 @@ class ViewServer:
 
     def run(self) -> None:
         """Serve until a signal or `stop`."""
-        # The server handles SIGINT itself, but not before its loop runs.
         with self._socket, InterruptsHeld(self.stop):
             self._server.run(sockets=[self._socket])
 
@@ -101,6 +102,16 @@ class ViewServer:
     ) -> None:
         self.stop()
         self._thread.join()
+
+
+class _Server(uvicorn.Server):
+    """A server without signal handlers: on a second Ctrl-C its own leave tasks half-done, which say
+    so with a traceback. It ends within some 2 s anyway."""
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Leave signals to `ViewServer.run`."""
+        yield
 
 
 class Guard:

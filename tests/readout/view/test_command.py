@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from websockets.sync.client import connect
 
 from lumitip.cli import main
 from lumitip.links.twin import published_layout
@@ -24,12 +25,14 @@ from lumitip.view.server import ViewServer
 
 
 @contextmanager
-def running(folder: Path, *arguments: str) -> Iterator[tuple["subprocess.Popen[str]", str]]:
+def running(
+    folder: Path, *arguments: str, stderr: int | None = None
+) -> Iterator[tuple["subprocess.Popen[str]", str]]:
     """The command in a process of its own, and the address that it prints."""
     command = [sys.executable, "-m", "lumitip.cli", "view", "--port", "0", *arguments]
     environment = os.environ | {"XDG_DATA_HOME": str(folder / "data")}
     with subprocess.Popen(
-        command, cwd=folder, env=environment, stdout=subprocess.PIPE, text=True
+        command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=stderr, text=True
     ) as process:
         assert process.stdout
         try:
@@ -55,6 +58,19 @@ def test_two_words_show_a_demonstration_and_ctrl_c_ends_it(tmp_path: Path) -> No
     reader = Reader(tmp_path / "recordings" / name)
     assert reader.layout == published_layout()
     assert reader.metadata.device_id == "twin:demo"
+
+
+@pytest.mark.parametrize("apart_s", [0.01, 0.1])
+def test_ctrl_c_twice_with_a_page_open_ends_it_in_silence(tmp_path: Path, apart_s: float) -> None:
+    with running(tmp_path, "twin://demo", stderr=subprocess.PIPE) as (process, url):
+        here = url.rstrip("/")
+        with connect(f"{here.replace('http', 'ws')}/stream", origin=here) as page:
+            page.recv(timeout=30)
+            process.send_signal(signal.SIGINT)
+            time.sleep(apart_s)
+            process.send_signal(signal.SIGINT)
+            _, errors = process.communicate(timeout=30)
+    assert (process.returncode, errors) == (130, "")
 
 
 @pytest.mark.slow
