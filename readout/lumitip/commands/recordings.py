@@ -3,7 +3,6 @@
 import argparse
 import time
 from datetime import UTC, datetime
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -67,17 +66,9 @@ def recover(options: argparse.Namespace) -> int:
 
 def foxglove(options: argparse.Namespace) -> int:
     """Write the file for Foxglove, and the layout of its panels beside it."""
-    from lumitip.foxglove import FoxgloveError, panels, write_scene
+    from lumitip.foxglove import FoxgloveError, by_name, panels, write_scene
 
-    recordings: dict[str, str] = {}
-    for text in options.files:
-        name, equals, path = text.partition("=")
-        name, path = (name, path) if equals else (Path(text).stem, text)
-        if name in recordings:
-            raise FoxgloveError(
-                f"two recordings are called {name!r}. Give one another name: NAME=FILE"
-            )
-        recordings[name] = path
+    recordings = by_name(options.files)
     layout = options.out.with_suffix(".foxglove.json")
     if layout.exists():
         raise FoxgloveError(f"{layout} exists. Choose another --out")

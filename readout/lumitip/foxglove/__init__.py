@@ -7,6 +7,7 @@ write_scene("scene.mcap", {"left": "left.mcap", "right": "right.mcap"})
 from lumitip.errors import MissingExtra
 
 try:
+    from lumitip.foxglove.names import by_name
     from lumitip.foxglove.scene import FoxgloveError, Written, write_scene
 except ModuleNotFoundError as error:
     if (error.name or "").partition(".")[0] not in (
@@ -20,4 +21,4 @@ except ModuleNotFoundError as error:
     raise MissingExtra("foxglove", "the file for Foxglove") from error
 from lumitip.foxglove.panels import panels
 
-__all__ = ["FoxgloveError", "Written", "panels", "write_scene"]
+__all__ = ["FoxgloveError", "Written", "by_name", "panels", "write_scene"]

@@ -27,14 +27,16 @@ from lumitip.frame import RecordedFrame
 from lumitip.processing import Tracker
 from lumitip.recording import Reader
 from lumitip.recording import message as frames_message
-from lumitip.recording.metadata import FINGER, NAME
+from lumitip.recording.metadata import FINGER
+from lumitip.recording.metadata import NAME as RECORD
 from lumitip.twin.optics import GAP_MM
 from lumitip.view.drawn import ESTIMATE, PUBLISHED, borders
 from lumitip.view.pose import described, reach_of
 
 MOST_HZ = 60.0
 """Largest rate of drawings: more are not visible. Numbers have every frame."""
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+"""Names that topics can have."""
 
 
 class FoxgloveError(LumitipError):
@@ -53,7 +55,7 @@ class Written:
 
 def write_scene(
     target: str | Path,
-    recordings: Mapping[str, str | Path],
+    recordings: Mapping[str, str | Path | Reader],
     *,
     gap_mm: float = GAP_MM,
     diameter_mm: float = DIAMETER_MM,
@@ -63,7 +65,8 @@ def write_scene(
 
     Args:
         target: of the file, ending in `.mcap`; must not exist yet.
-        recordings: of each fingertip, by a name of letters, digits and `_`.
+        recordings: of each fingertip, by a name of letters, digits and `_`: a path, or of a file
+            with several fingertips `Reader(path, tolerant=True, finger=...)`.
         gap_mm: that the estimates expect, see `PoseEstimator`.
         diameter_mm: of cables that the estimates expect.
         estimates: whether poses are estimated, which takes about a millisecond for each frame.
@@ -80,7 +83,7 @@ def write_scene(
             f"the file is {path}; its name must end in .mcap for Foxglove to open it"
         )
     fingers = [
-        _Finger(_name(name), Reader(file, tolerant=True), gap_mm, diameter_mm, estimates)
+        _Finger(_name(name), _reader(file), gap_mm, diameter_mm, estimates)
         for name, file in _recordings(recordings).items()
     ]
     try:
@@ -101,7 +104,11 @@ def write_scene(
     return Written(path, frames, damage)
 
 
-def _recordings(recordings: object) -> Mapping[str, str | Path]:
+def _reader(recording: str | Path | Reader) -> Reader:
+    return recording if isinstance(recording, Reader) else Reader(recording, tolerant=True)
+
+
+def _recordings(recordings: object) -> Mapping[str, str | Path | Reader]:
     if not isinstance(recordings, Mapping) or not recordings:
         raise FoxgloveError(
             "recordings by name are needed, such as {'left': 'left.mcap', 'right': 'right.mcap'}"
@@ -110,7 +117,7 @@ def _recordings(recordings: object) -> Mapping[str, str | Path]:
 
 
 def _name(name: object) -> str:
-    if not isinstance(name, str) or not _NAME.fullmatch(name) or name == ROOT:
+    if not isinstance(name, str) or not NAME.fullmatch(name) or name == ROOT:
         raise FoxgloveError(
             f"a fingertip is called {name!r:.60}; letters, digits and _ are allowed, a letter "
             f"first, and not {ROOT!r}. Give it another name: NAME=FILE"
@@ -229,7 +236,7 @@ def _write(mcap: McapWriter, fingers: list[_Finger]) -> int:
     """All messages in order of time; returns the number of frames."""
     mcap.start(profile="", library="lumitip")
     for finger in fingers:
-        mcap.add_metadata(NAME, finger.reader.metadata.to_texts() | {FINGER: finger.name})
+        mcap.add_metadata(RECORD, finger.reader.metadata.to_texts() | {FINGER: finger.name})
     topics, by_name, count = _Topics(mcap), {f.name: f for f in fingers}, 0
     layouts = [(finger.name, finger.reader.layout) for finger in fingers]
     for at_ns, name, frame in heapq.merge(*(f.frames() for f in fingers), key=lambda each: each[0]):

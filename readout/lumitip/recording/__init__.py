@@ -10,7 +10,7 @@ from lumitip.errors import MissingExtra
 from lumitip.frame import RecordedFrame
 
 try:
-    from lumitip.recording.reader import Reader, Summary, summarise
+    from lumitip.recording.reader import Reader, Summary, fingers, summarise
     from lumitip.recording.tables import export
     from lumitip.recording.writer import Recovered, Writer, recover
 except ModuleNotFoundError as error:
@@ -31,6 +31,7 @@ __all__ = [
     "Summary",
     "Writer",
     "export",
+    "fingers",
     "recover",
     "summarise",
 ]

@@ -42,7 +42,7 @@ class Reader:
         self.tolerant = tolerant
         self.damage: tuple[str, ...] = ()
         """Damage found in the last or current iteration, for the user."""
-        with self._open() as stream:
+        with opened(self.path) as stream:
             self.finger, self.metadata = read_metadata(stream, str(path), finger)
 
     def __repr__(self) -> str:
@@ -62,7 +62,7 @@ class Reader:
         """
         self.damage = ()
         frames, last_seq = 0, None
-        with self._open() as stream:
+        with opened(self.path) as stream:
             for found in read_frames(stream, len(self.layout), self.finger):
                 if isinstance(found, RecordedFrame):
                     missing = missing_before(found, last_seq)
@@ -75,16 +75,6 @@ class Reader:
                         f"{self.path}: {found.why}, after {frames} frames. "
                         f"`lumitip recover {self.path}` saves the readable frames"
                     )
-
-    def _open(self) -> BinaryIO:
-        try:
-            stream = self.path.open("rb")
-            if not stream.seekable():
-                stream.close()
-                raise OSError("it is a pipe; a file is needed")
-            return stream
-        except (OSError, ValueError) as error:
-            raise RecordingError(f"{self.path}: cannot be read: {error}") from error
 
 
 @dataclass(frozen=True)
@@ -130,6 +120,33 @@ def summarise(path: str | Path, finger: str | None = None) -> Summary:
     return Summary(reader.metadata, frames, last - first, lost, known, reader.damage)
 
 
+def fingers(path: str | Path) -> tuple[str, ...]:
+    """Names of the fingertips of a file, in its order; one that is empty in a recording of one.
+
+    Raises:
+        RecordingError: if the file cannot be read or is not a recording.
+    """
+    file = arguments.path(path, RecordingError)
+    with opened(file) as stream:
+        return tuple(_texts(stream, str(path)))
+
+
+def opened(path: Path) -> BinaryIO:
+    """The file, to be read.
+
+    Raises:
+        RecordingError: if it cannot be.
+    """
+    try:
+        stream = path.open("rb")
+        if not stream.seekable():
+            stream.close()
+            raise OSError("it is a pipe; a file is needed")
+        return stream
+    except (OSError, ValueError) as error:
+        raise RecordingError(f"{path}: cannot be read: {error}") from error
+
+
 def read_metadata(stream: BinaryIO, source: str, finger: str | None = None) -> tuple[str, Metadata]:
     """Name and metadata of a fingertip; all are before the first chunk. The name is empty in a file
     with one fingertip.
@@ -138,6 +155,18 @@ def read_metadata(stream: BinaryIO, source: str, finger: str | None = None) -> t
         RecordingError: if the stream is not a recording, or ends too early, or has several
             fingertips and not the one that is named.
     """
+    texts = _texts(stream, source)
+    chosen = next(iter(texts)) if finger is None and len(texts) == 1 else finger
+    if chosen not in texts:
+        raise RecordingError(_unknown_finger(source, finger, list(texts)))
+    try:
+        return chosen, Metadata.from_texts(texts[chosen])
+    except RecordingError as error:
+        raise RecordingError(f"{source}: {error}") from error
+
+
+def _texts(stream: BinaryIO, source: str) -> dict[str, dict[str, str]]:
+    """Metadata of each fingertip of a file, by name."""
     texts: dict[str, dict[str, str]] = {}
     for record in records(stream):
         if isinstance(record, MetadataRecord) and record.name == NAME:
@@ -148,13 +177,7 @@ def read_metadata(stream: BinaryIO, source: str, finger: str | None = None) -> t
             break
     if not texts:
         raise RecordingError(f"{source} is an MCAP file, but not a recording of a fingertip")
-    chosen = next(iter(texts)) if finger is None and len(texts) == 1 else finger
-    if chosen not in texts:
-        raise RecordingError(_unknown_finger(source, finger, list(texts)))
-    try:
-        return chosen, Metadata.from_texts(texts[chosen])
-    except RecordingError as error:
-        raise RecordingError(f"{source}: {error}") from error
+    return texts
 
 
 def _unknown_finger(source: str, finger: str | None, names: list[str]) -> str:

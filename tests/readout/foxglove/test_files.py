@@ -9,7 +9,7 @@ from lumitip import Layout, LumitipError
 from lumitip.cli import main
 from lumitip.foxglove import FoxgloveError, write_scene
 from lumitip.frame import Frame
-from lumitip.recording import Reader, RecordingError, Writer, export, summarise
+from lumitip.recording import Reader, RecordingError, Writer, export, fingers, summarise
 
 Sources = dict[str, tuple[Path, list[Frame]]]
 
@@ -87,6 +87,43 @@ def test_the_command_writes_file_and_panels(
     assert "two recordings are called 'left'. Give one another name" in capsys.readouterr().err
     assert main(["foxglove", files[0], f"again={files[0]}", *other]) == 0
     assert "16 frames of left, again" in capsys.readouterr().out
+
+
+def test_names_of_files_become_names_of_topics(
+    sources: Sources, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    names = ("twin-cable-001", "a b", "2nd", "lumitip", "é", "a-b", "x")
+    files = [tmp_path / f"{name}.mcap" for name in (*names, "a_b")]
+    for file in files:
+        file.write_bytes(sources["left"][0].read_bytes())
+    out = tmp_path / "scene" / "scene.mcap"
+    out.parent.mkdir()
+    assert main(["foxglove", *map(str, files), "--out", str(out), "--no-estimate"]) == 0
+    printed = capsys.readouterr().out
+    called = "twin_cable_001, a_b_2, finger_2nd, finger_lumitip, finger__, a_b_3, x, a_b"
+    assert f"64 frames of {called}\n" in printed
+    assert set(fingers(out)) == set(called.split(", "))
+    for name in called.split(", "):
+        assert summarise(out, name).frames == 8
+    other = ["--out", str(tmp_path / "other.mcap"), "--no-estimate"]
+    assert main(["foxglove", f"a-b={files[0]}", *other]) == 2
+    assert "a fingertip is called 'a-b'; letters, digits and _" in capsys.readouterr().err
+
+
+def test_all_fingertips_of_a_file_are_taken(
+    scene: Path, sources: Sources, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    again, more = tmp_path / "again.mcap", tmp_path / "more.mcap"
+    assert fingers(scene) == ("left", "right") and fingers(sources["left"][0]) == ("",)
+    assert main(["foxglove", str(scene), "--out", str(again)]) == 0
+    assert "16 frames of left, right" in capsys.readouterr().out
+    assert again.read_bytes() == scene.read_bytes()
+    options = ["--no-estimate", "--out", str(more)]
+    assert main(["foxglove", str(scene), str(sources["left"][0]), *options]) == 2
+    assert "two recordings are called 'left'. Give one another name" in capsys.readouterr().err
+    assert main(["foxglove", str(scene), f"old={scene}", *options]) == 0
+    assert "32 frames of left, right, old_left, old_right" in capsys.readouterr().out
+    assert [f.seq for f in Reader(more, finger="old_right")] == list(range(1, 9))
 
 
 def test_the_command_overwrites_nothing(

@@ -258,7 +258,7 @@ def test_a_disk_that_fails_ends_the_recording_there(
 
     path = record(make_frames(300))
     whole = len(list(Reader(path)))
-    monkeypatch.setattr(Reader, "_open", lambda reader: Failing(reader.path))
+    monkeypatch.setattr("lumitip.recording.reader.opened", Failing)
     reader = Reader(path, tolerant=True)
     assert 10 < len(list(reader)) < whole
     assert "Input/output error" in reader.damage[-1]
