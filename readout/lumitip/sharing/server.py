@@ -71,7 +71,8 @@ class FingertipServer:
         source = Url.parse(url)
         if source.scheme == "replay":
             raise SharingError(
-                f"{source.text} is a file: each program can open it without a server"
+                f"{source.text} is a file: each program can open it without a server. "
+                "ble://, serial://, tcp:// and twin:// can be shared"
             )
         if isinstance(layout, str | Path):
             layout = Layout.load(layout)

@@ -162,6 +162,20 @@ def test_no_arm_is_told_in_time() -> None:
         URArm("127.0.0.77", MOUNT, CALM, timeout=2.0)
 
 
+def test_the_example_says_in_one_line_that_no_arm_answers() -> None:
+    done = subprocess.run(
+        [sys.executable, "examples/trace_cable_ur.py", "127.0.0.77", "40"],
+        capture_output=True,
+        text=True,
+        timeout=100,
+        cwd=ROOT,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (1, "")
+    (line,) = done.stderr.splitlines()
+    assert "; no arm there takes commands at port 30004" in line
+
+
 @patient
 def test_the_example_traces_a_simulated_cable_with_the_arm(peer: Peer) -> None:
     done = subprocess.run(

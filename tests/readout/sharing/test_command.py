@@ -92,4 +92,18 @@ def test_a_fault_of_the_address_is_one_line(capsys: pytest.CaptureFixture[str]) 
     assert main(["serve", "twin://pyramid", "--port", "0"]) == 2
     assert "there is no shape 'pyramid'" in capsys.readouterr().err
     assert main(["serve", "replay://run.mcap"]) == 2
-    assert "each program can open it without a server" in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert "each program can open it without a server. ble://, serial://, tcp:// and twin" in error
+
+
+@pytest.mark.parametrize("command", ["serve", "tare"])
+def test_the_help_lists_no_address_that_is_refused(
+    command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main([command, "--help"])
+    arguments = capsys.readouterr().out.partition("positional arguments:")[2]
+    assert "twin://SHAPE" in arguments and "replay://" not in arguments
+    with pytest.raises(SystemExit):
+        main(["record", "--help"])
+    assert "replay://FILE" in capsys.readouterr().out
