@@ -154,7 +154,11 @@ CHANGES: dict[str, Any] = {
     "printer.profile": "other",
 }
 # What else must change with a field.
-FRONT: dict[str, Any] = {"emitter.resistor_side": "front", "emitter.resistor": "0603"}
+OF_SOURCES: dict[str, Any] = {
+    "emitter.resistor_side": "front",
+    "emitter.resistor": "0603",
+    "emitter.current_ma": 17.0,  # of a string more than with resistors: what the glue bears
+}
 PROTECTED: dict[str, Any] = {"protection.diode": "H5VUD5U", "breakout.board_mm": (45.72, 38.1)}
 WITH: dict[str, dict[str, Any]] = {
     "backing.variant": {
@@ -169,7 +173,7 @@ WITH: dict[str, dict[str, Any]] = {
     "tip.angle_deg": {"tip.edge_mm": 0.5656},
     "breakout.indicator": {"breakout.board_mm": (45.72, 38.1)},
     "emitter.string_leds": {"emitter.current_ma": 5.0},
-    "emitter.drive": FRONT,
+    "emitter.drive": OF_SOURCES,
     "mask.route": {"mask.film": "black"},
     "protection.diode": {"breakout.board_mm": (45.72, 38.1)},
 }
@@ -177,7 +181,7 @@ WITH: dict[str, dict[str, Any]] = {
 ONLY_WITH: dict[str, dict[str, Any]] = {
     "module": {"controller.board": "nrf52840_module"},
     "receiver.array": {"receiver.load": "each"},
-    "emitter.source": {"emitter.drive": "source", **FRONT},
+    "emitter.source": {"emitter.drive": "source", **OF_SOURCES},
     "emitter.switch": {"receiver.load": "each"},
     "protection.resistor": PROTECTED,
     "protection.series_ohm": PROTECTED,

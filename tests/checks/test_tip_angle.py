@@ -169,11 +169,12 @@ def test_the_tip_lies_in_the_cavity(preset: str, angle: float, made: Made) -> No
 
 @pytest.mark.parametrize("preset", PRESETS)
 def test_the_cavity_is_the_same_at_every_angle(preset: str, made: Made) -> None:
+    """But for the triangles of a wall that is higher where silicone wraps the tip."""
     first, *others = [cavity(*made(preset, angle)) for angle in ANGLES]
     for other in others:
         for one, same in zip(first, other, strict=True):
             assert one.area > 50
-            assert one.symmetric_difference(same).area < 1e-3
+            assert one.symmetric_difference(same).area < 1e-3 * one.length
 
 
 @pytest.mark.parametrize("preset", PRESETS)

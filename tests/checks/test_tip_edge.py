@@ -40,9 +40,9 @@ def with_edge(design_dir: Path, tmp_path: Path) -> Callable[[float], tuple[Path,
     def make(edge_mm: float) -> tuple[Path, Design]:
         config = resolve(load(design_dir / "presets" / "published.toml")).config
         tip = config.parameters.tip.model_copy(update={"edge_mm": edge_mm})
-        design = derive(
-            replace(config, parameters=config.parameters.model_copy(update={"tip": tip}))
-        )
+        mould = config.parameters.mould.model_copy(update={"tip_lip_mm": 0.0})
+        changed = config.parameters.model_copy(update={"tip": tip, "mould": mould})
+        design = derive(replace(config, parameters=changed))
         for made in backing(design, design.receiver):
             path = tmp_path / made.path
             path.parent.mkdir(exist_ok=True)

@@ -52,7 +52,7 @@ def test_one_change_is_named_where_it_is_enough(plan: Any, file: Any) -> None:
     (step,) = found.steps
     assert {r.field for r in step.remedies} == {"emitter.current_ma"}
     current = step.remedies[0].value
-    assert 11 < current < 15
+    assert 7 < current < 9  # the heat that the glue bears
     resolve(load(file(f"[emitter]\ncurrent_ma = {current}\nstring_leds = 5\n")))
 
 

@@ -24,6 +24,7 @@ from lumitip_fab.derive.finger.stack import (
 )
 from lumitip_fab.derive.finger.strength import Body, derive_strength
 from lumitip_fab.derive.finger.tip import derive_tip
+from lumitip_fab.derive.finger.tip_slots import refuse_lip
 from lumitip_fab.derive.making import mask, mould
 from lumitip_fab.derive.making.clamp import derive_clamps
 from lumitip_fab.derive.making.consumables import derive_consumables
@@ -123,6 +124,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     joints = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
     cabling = derive_cabling(config, joints, silhouette, coupling, circuit, figures, faults)
     faults.stop()
+    refuse_lip(config, silhouette, plan.board, stack, body.tip, faults)
     heat = derive_heat(config, slicing, casting, silhouette, figures, faults)
     strength = derive_strength(config, body, optics, faults)
     faults.stop()

@@ -77,7 +77,7 @@ def derive_tip(
         faults.add("tip_angle_differs", start=start, edge=edge, angle=angle, plate=plate)
     faults.unless(written or angle <= 45 + 1e-9, "wedge_steep", angle=angle, least=plate - edge)
     slope = math.tan(math.radians(angle))
-    slots = derive_slots(config, outline, board, stack, (edge, slope), faults)
+    slots = derive_slots(config, outline, board, stack, (edge, slope))
     return Tip(start_y, edge, angle, slots)
 
 

@@ -72,11 +72,8 @@ def derive_slots(
     board: Board,
     stack: Stack,
     edge: tuple[float, float],
-    faults: Diagnostics,
 ) -> tuple[Box, ...]:
-    """The slots, left and right; none where the file wants none.
-
-    Where there is no room, a lip that the file writes is refused; an automatic one is left out.
+    """The slots, left and right; none where the file wants none, or where there is no room.
 
     Args:
         config: the parameters.
@@ -84,15 +81,20 @@ def derive_slots(
         board: whose pocket they must not meet.
         stack: for the height that the mould's wall may have.
         edge: thickness of the tip edge (mm), and what it gains for each mm away from it.
-        faults: where refusals are noted.
     """
     if not config.parameters.mould.tip_lip_mm:
         return ()
-    tip = _Edge(config, outline, board, stack, *edge)
-    noted = Diagnostics(config) if LIP in config.automatic else faults
-    before = len(noted.problems)
-    tip.refuse(noted)
-    return tip.slots if len(noted.problems) == before else ()
+    tip, faults = _Edge(config, outline, board, stack, *edge), Diagnostics(config)
+    tip.refuse(faults)
+    return () if faults.problems else tip.slots
+
+
+def refuse_lip(
+    config: Input, outline: Outline, board: Board, stack: Stack, tip: Tip, faults: Diagnostics
+) -> None:
+    """Refuse a lip that the file writes where there is no room; an automatic one is left out."""
+    if config.parameters.mould.tip_lip_mm and LIP not in config.automatic:
+        _Edge(config, outline, board, stack, tip.edge_mm, tip.slope).refuse(faults)
 
 
 def wall_over_rim_mm(config: Input, lip_mm: float, edge_mm: float, slope: float) -> float:
