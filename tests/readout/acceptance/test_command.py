@@ -53,7 +53,9 @@ def gauge_file(tmp_path: Path) -> Path:
 
 @pytest.fixture(autouse=True)
 def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A folder without data of devices, and without outputs, whose layout the twin would take."""
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    monkeypatch.chdir(tmp_path)
 
 
 def arguments(gauge: Path, out: Path) -> list[str]:
