@@ -197,8 +197,8 @@ def _wrong_units(manual: Manual, design: Design) -> list[str]:
     """Hours, degrees and volts anywhere in the text that are not the design's."""
     volts = {design.wiring.supply_v, 5.0, 0.0}  # the controller's supply, and ground
     volts |= {lit.output_v for lit in design.electrical.indicators}
-    contacts = [contact for flange in design.flanges for contact in flange.contacts]
-    volts |= {float(c.carries.removesuffix("V")) for c in contacts if c.kind == "supply"}
+    for contact in (c for f in design.flanges for c in f.contacts if c.kind == "supply"):
+        volts.add(float(contact.carries.removesuffix("V")))
     led = design.packages.led
     if not led.mark_is_known:  # 0.15 V less at the 1 mA of a multimeter
         volts.add(round(led.forward_voltage_v - 0.15, 1))

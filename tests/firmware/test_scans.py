@@ -23,7 +23,7 @@ def test_several_conversions_and_ambient_light(
     run: Callable[..., Any],
     sketch: Callable[[str], Path],
 ) -> None:
-    """What ambient light takes is given back, up to the converter's greatest reading; a cell
+    """The share of ambient light is given back, up to the converter's greatest reading; a cell
     without it keeps its code."""
     done = run(str(host_program("scans", "published", *defines)))
     assert done.returncode == 0, done.stderr

@@ -30,8 +30,9 @@ from lumitip_fab.derive.making.clamp import derive_clamps
 from lumitip_fab.derive.making.consumables import derive_consumables
 from lumitip_fab.derive.making.fit_plate import derive_fit_plate
 from lumitip_fab.derive.making.gauge_card import derive_gauge_cards
+from lumitip_fab.derive.making.heat import derive_heat
 from lumitip_fab.derive.making.panels import derive_panels
-from lumitip_fab.derive.making.printing import derive_heat, derive_slicing
+from lumitip_fab.derive.making.printing import derive_slicing
 from lumitip_fab.derive.making.purchase import derive_purchase
 from lumitip_fab.derive.making.supplies import Assembled, derive_supplies
 from lumitip_fab.derive.making.tolerances import known_mask_shift

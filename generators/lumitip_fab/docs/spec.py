@@ -261,15 +261,8 @@ def _further(design: Design) -> dict[str, Any]:
     stack, mount, closing, system = design.stack, design.mount, design.closing, design.system
     shape = design.layout.optics.hole_shape
     added = system.gripper_z_mm - system.coupling_mm
-    return {
-        "stack": stack,
-        "mount": mount,
-        "closing": closing,
-        "system": system,
-        "printing": design.printing,
-        "tip": design.tip,
-        "mask": design.mask,
-        "wiring": design.wiring,
+    named = ("stack", "mount", "closing", "system", "printing", "tip", "mask", "wiring")
+    return {name: getattr(design, name) for name in (*named, "electrical")} | {
         "plate": design.fit_plate,
         "current_ma": sum(design.wiring.current_ma),
         "slant": design.outline.tip_y_mm - design.tip.slant_start_y_mm,
@@ -285,7 +278,6 @@ def _further(design: Design) -> dict[str, Any]:
         "across": "diameter" if shape == "circle" else "across flats",
         "flex_lean": " and flex.lean_deg" if design.interfaces else "",
         "trusted": _trusted(design),
-        "electrical": design.electrical,
         "use": design.heat_steps["use"],
     }
 
