@@ -99,6 +99,7 @@ def test_the_file_to_edit_is_the_published_sensor_with_pull_ups_and_current_sour
     own, other = mine.parameters.model_dump(), published.parameters.model_dump()
     differing = {
         ("receiver", "load"): ("each", "shared"),
+        ("receiver", "pull_up_ohm"): (10000.0, 75000.0),
         ("receiver", "bulk_capacitor"): ("10uF 0603 10V", "none"),
         ("emitter", "drive"): ("source", "resistor"),
         ("emitter", "switch"): ("AO3400A", "none"),

@@ -79,7 +79,7 @@ def test_every_field_has_the_published_value_as_its_default(
     section, key = field.split(".")
     # The published boards share pull-ups, and have no sources, switch, power LEDs, bulk capacitor,
     # ESD diodes or diode before the controller; their wires have an order of their own.
-    differs = {"receiver.load", "emitter.drive", "emitter.switch"}
+    differs = {"receiver.load", "receiver.pull_up_ohm", "emitter.drive", "emitter.switch"}
     differs |= {
         "breakout.feed_diode",
         "breakout.indicator",

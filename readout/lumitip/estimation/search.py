@@ -114,8 +114,10 @@ class Search:
         shape, bank = self.shape(kind), self.bank(kind)
         starts = bank.closest(frame.light, frame.scale, _STARTS)
         poses = [self._full_pose(kind, pose, frame, one.drifts) for pose in starts]
-        tried = [*fits(shape, np.array(poses), frame, _GLANCE), one]
-        looked = fits(shape, self._kept(tried), frame, _LOOK)
+        kept = self._kept([*fits(shape, np.array(poses), frame, _GLANCE), one])
+        if one.converged and not bank.elsewhere(one, kept):
+            return one
+        looked = fits(shape, np.array(poses_of(kept)), frame, _LOOK)
         losses = bounded(looked)
         first = looked[int(losses.argmin())]
         near = losses < losses.min() + RIVAL
@@ -154,11 +156,10 @@ class Search:
         return best
 
     @staticmethod
-    def _kept(tried: list[Fit]) -> Floats:
-        """Poses of the fits that are not far behind the best, shape `(n, p)`."""
+    def _kept(tried: list[Fit]) -> list[Fit]:
+        """The fits that are not far behind the best."""
         losses = bounded(tried)
-        kept = np.flatnonzero(losses < losses.min() + _BEHIND)
-        return np.array([tried[number].pose for number in kept])
+        return [tried[number] for number in np.flatnonzero(losses < losses.min() + _BEHIND)]
 
     def bent(self, starts: Sequence[tuple[str, Floats]], frame: Frame) -> Fit:
         """The best fit of a bent cable near one of several poses of `"cable"` or `BENT`."""

@@ -22,7 +22,6 @@ FULL_SHARE = 0.95
 would hide what dims a cell by less than the rest."""
 CUT_OFF_SHARE = 1.1  # of its range, that the light of a bare cell asks for
 MOST_PULL_UP_OHM = 150e3  # a channel settles that much slower
-SHARED_OHM = 75e3  # the published one
 
 
 def choose_strings(config: Input) -> Iterator[tuple[str, Value, str]]:
@@ -120,11 +119,7 @@ def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
         p.emitter.resistor,
         f"takes up to {1000 * load:.0f} mW over all tolerances, rated {1000 * package.power_w:.0f}",
     )
-    start = (
-        SHARED_OHM
-        if p.receiver.load == "shared"
-        else float(automatic_fields()["receiver.pull_up_ohm"].start)
-    )
+    start = float(automatic_fields()["receiver.pull_up_ohm"].start)
     factor = _least_ma(config, start) / p.emitter.current_ma
     ohm = start if factor <= 1 else sold_from(min(start * factor, MOST_PULL_UP_OHM))
     share = FULL_SHARE * p.emitter.current_ma / _least_ma(config, ohm)
