@@ -56,6 +56,13 @@ def without(pattern: str) -> Edit:
     return edit
 
 
+def lengthened(text: str) -> str:
+    """With a wire of an analog signal that has more capacitance than the firmware waits for."""
+    longer = re.sub(r"^(W2\.\d+,A0,.*,0\.08,)260,", r"\g<1>320,", text, count=1, flags=re.MULTILINE)
+    assert longer != text
+    return longer
+
+
 EDITS: list[tuple[str, Edit, set[str]]] = [
     # Two wires swapped at one end, in each file.
     (LIST, swapped("breakout,J5.3,", "breakout,J5.4,"), {"ends", "pins", "note", "diagram"}),
@@ -75,6 +82,7 @@ EDITS: list[tuple[str, Edit, set[str]]] = [
     (LIST, replaced("J5.5,GN", "J5.5,XX"), {"colours", "marks", "note", "diagram"}),
     (LIST, replaced("BK,0.08,250", "BK,0.08,150"), {"lengths", "note", "texts"}),
     (LIST, replaced("BK,0.08,250", "BK,0.08,300"), {"lengths", "note", "texts"}),
+    (LIST, lengthened, {"capacitance", "lengths", "note", "texts"}),
     (LIST, replaced("RD,0.08,250", "RD,0.02,250"), {"density", "note", "texts"}),
     (LIST, replaced("RD,0.08,250,83.00", "RD,0.08,250,34.10"), {"current", "note", "texts"}),
     (LIST, replaced("RD,0.08,340,", "RD,0.0005,340,"), {"density", "drop", "note", "texts"}),

@@ -87,7 +87,7 @@ def test_every_choice_has_a_value_and_a_reason_in_one_line(file: Any) -> None:
     choices = {choice.field: choice for choice in design.choices}
     stated = {"receiver.load", "emitter.drive", "emitter.switch", "flange.indicator"}
     stated |= {"breakout.indicator", "receiver.bulk_capacitor", "wiring.order", "protection.diode"}
-    stated |= {"breakout.feed_diode"}
+    stated |= {"breakout.feed_diode", "receiver.pull_up_ohm"}
     assert set(choices) == set(automatic_fields()) - stated, "published.toml states these"
     assert choices["receiver.photodetector"].value == "'PT19-21C'"
     assert "needs a pitch of at least 3.70 mm" in choices["receiver.photodetector"].reason
@@ -199,6 +199,35 @@ def test_a_smaller_change_does_not_mend(file: Any) -> None:
         resolve(load(file(f"[stack]\nsilicone_mm = {value - 0.05:g}\n")))
 
 
+AUTOMATIC = '[emitter]\ndrive = "auto"\n[supply]\nvoltage_v = {}.0\n'
+
+
+@pytest.mark.parametrize("volts", [5, 6, 9])
+def test_resistors_that_stand_for_current_sources_hold_the_current(file: Any, volts: int) -> None:
+    """With the fewest strings it would be 3.9 to 41.6 mA from 6 and 9 V, 8.6 to 32.4 mA from 5."""
+    design = derive(load(file(AUTOMATIC.format(volts))))
+    strings = design.electrical.strings
+    assert strings.regulation is None
+    left_v = volts - max(map(len, design.wiring.strings)) * strings.forward_v
+    assert left_v >= 0.3 * volts
+    assert min(strings.low_ma) > 0.6 * strings.target_ma
+    assert max(strings.high_ma) < 1.4 * strings.target_ma
+    (reason,) = [c.reason for c in design.choices if c.field == "emitter.string_leds"]
+    assert f"% of {volts} V is left to each resistor" in reason
+
+
+def test_written_resistors_are_as_few_as_the_supply_allows(file: Any) -> None:
+    design = derive(load(file("[supply]\nvoltage_v = 9.0\n")))
+    assert max(map(len, design.wiring.strings)) == 6
+
+
+@pytest.mark.parametrize("columns", ["[5, 4, 5, 4, 5, 4, 5]", "[9, 8, 9, 8, 9, 8]"])
+def test_a_fuse_carries_the_worst_case_of_all_strings(file: Any, columns: str) -> None:
+    config = resolve(load(file(f"{AUTOMATIC.format(5)}[grid]\ncolumns = {columns}\n"))).config
+    high_ma = sum(derive(config).electrical.strings.high_ma)
+    assert 1000 * 0.75 * config.parts.flange.fuse.rated_a > high_ma
+
+
 def test_copper_follows_what_is_written_of_it(file: Any) -> None:
     for text, field, least in (
         ("track_mm = 0.8", "board.supply_track_mm", 0.8),
@@ -229,19 +258,22 @@ def test_too_many_cells_are_compared_with_the_largest_multiplexer(file: Any) -> 
         )
 
 
+OWN_PULL_UPS = '[receiver]\npull_up_ohm = "auto"\n'
+
+
 def test_light_is_never_given_up_for_supply_or_heat(file: Any) -> None:
     """19.2 mA gives 300 µA of light current; 3.1 V over twice 75 kΩ take 20.7 µA, 1.3 mA, of which
     a bare cell takes 95 % or more, but for the next value of resistors that is sold."""
     for text in ("[supply]\nmax_ma = 5.0\n", "[emitter]\nmax_heat_w = 0.12\n"):
-        design = derive(load(file(text)))
+        design = derive(load(file(text + OWN_PULL_UPS)))
         assert 300 * min(design.wiring.current_ma) / 19.2 > 0.9 * 3.1e6 / design.wiring.pull_up_ohm
     with pytest.raises(RuleError):
-        resolve(load(file("[emitter]\nmax_heat_w = 0.05\n")))
+        resolve(load(file("[emitter]\nmax_heat_w = 0.05\n" + OWN_PULL_UPS)))
 
 
 def test_a_range_that_is_not_used_is_not_said_to_be(file: Any) -> None:
     for current, used in ((1.0, False), (2.0, True), (10.0, True)):
-        choices = derive(load(file(f"[emitter]\ncurrent_ma = {current}\n"))).choices
+        choices = derive(load(file(f"[emitter]\ncurrent_ma = {current}\n{OWN_PULL_UPS}"))).choices
         (reason,) = [c.reason for c in choices if c.field == "receiver.pull_up_ohm"]
         assert ("a part of its range" not in reason) == used, reason
 

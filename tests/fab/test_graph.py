@@ -109,7 +109,13 @@ def test_what_is_outside_touches_no_finger(keys: Keys) -> None:
 
 
 def test_lengths_of_wires_touch_the_wiring_alone(keys: Keys) -> None:
-    assert changed(keys(), keys("[wiring]\nslack_mm = 60.0\n")) == {"wiring"}
+    assert changed(keys(), keys("[wiring]\nslack_mm = 45.0\n")) == {"wiring"}
+
+
+def test_wires_longer_than_a_channel_is_made_for_touch_its_circuit_and_its_wait(keys: Keys) -> None:
+    longer = changed(keys(), keys("[wiring]\ncontroller_mm = 500.0\n"))
+    assert {"wiring", "finger_spice", "firmware"} <= longer
+    assert not {"finger_board", "other_board", "backing", "mask"} & longer
 
 
 def test_the_sheet_that_schematics_grow_from_touches_the_boards(package: Path) -> None:

@@ -250,7 +250,7 @@ class Controller(Entry):
     adc_bits: int = Field(ge=8, le=16)
     """Resolution of the analog-to-digital converter."""
     input_pf: float = Field(ge=0, le=1e4)
-    """Capacitance of an analog input with the wire to it."""
+    """Capacitance of an analog input."""
     supply_v: float = Field(gt=0, le=5.5)
     """Supply of its inputs, which is also the detectors' supply."""
     hbm_v: float | None = Field(default=None, gt=0, le=1e5)

@@ -37,6 +37,7 @@ _CONNECTORS = {
     "flange": ("J4", "J5"),  # which are there if the controller is
 }
 _OHM_MM2_PER_M = 0.0178
+_PF_PER_M = 96.1  # ground, signal, ground in 3M's cable 3560 (TS-0672-B)
 _FIXED = {"GND": "BK", "3V3": "OG"}
 _BEFORE_FUSE = "_IN"
 """End of a supply's net before its board's fuse; the wire has the supply's name."""
@@ -65,6 +66,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield count("wiring.colours", _LIST, _wrong_colours(rows, design), "wires")
     yield _lengths(rows, boards, design)
     yield from _currents(rows, design)
+    yield _capacitance(rows, design)
     yield from _note(outputs, rows, design)
     yield from _diagram(outputs, rows, design)
 
@@ -240,6 +242,14 @@ def _currents(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
     )
     most = design.cabling.most_drop * design.wiring.supply_v
     yield Measurement("wiring.drop", _LIST, drop, 0, most, "V", "supply to emitter and back")
+
+
+def _capacitance(rows: tuple[Row, ...], design: Design) -> Measurement:
+    """Of the longest wire of an analog signal, against what the firmware's wait is for."""
+    analog = {cell.adc_pin for cell in design.cells}
+    longest_mm = max((row.length_mm for row in rows if row.signal in analog), default=math.nan)
+    pf, most = _PF_PER_M * longest_mm / 1000, design.electrical.channel.wire_pf
+    return Measurement("wiring.capacitance", _LIST, pf, 0, most, "pF", "longest analog wire")
 
 
 def _note(outputs: Path, rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:

@@ -81,6 +81,8 @@ class Channel:
     line_pf: float
     """Common terminal of the multiplexer, wire and input of the controller, with the parts that
     protect it."""
+    wire_pf: float
+    """Of it, the longest wire of a finger to the controller, to those beside it."""
     step_v: float
     """One step of the ADC."""
     full_scale_v: float

@@ -8,7 +8,7 @@ from dataclasses import replace
 from lumitip_fab.config.automatic import Value, automatic_fields
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.wiring.ratings import sold_from
-from lumitip_fab.derive.wiring.sources import String
+from lumitip_fab.derive.wiring.sources import String, longest_with_resistor
 from lumitip_fab.derive.wiring.strings import (
     lengths,
     longest_string,
@@ -22,14 +22,22 @@ FULL_SHARE = 0.95
 would hide what dims a cell by less than the rest."""
 CUT_OFF_SHARE = 1.1  # of its range, that the light of a bare cell asks for
 MOST_PULL_UP_OHM = 150e3  # a channel settles that much slower
+STEADY_SHARE = 0.3
+"""Share of the supply across a resistor that a choice of this program leaves, if the ratings allow:
+with half of it the current changes twice as much with supply and temperature."""
 
 
-def choose_strings(config: Input) -> Iterator[tuple[str, Value, str]]:
+def choose_strings(config: Input, steady: bool = False) -> Iterator[tuple[str, Value, str]]:
     """Automatic values of drive, current, LEDs of a string, resistor and pull-up. Where no
-    combination passes, the one with resistors that breaks the fewest rules."""
-    refused = ""
+    combination passes, the one with resistors that breaks the fewest rules.
+
+    Args:
+        config: the input.
+        steady: prefer strings that leave a resistor `STEADY_SHARE`, as where the drive is automatic.
+    """
+    refused, steady = "", steady or "emitter.drive" in config.automatic
     for driven in _drives(config):
-        for tried, longest in _candidates(driven):
+        for tried, longest in _candidates(driven, steady):
             problem = next(string_problems(tried, _strings(tried, longest)), None)
             if problem is None:
                 yield from _drive_proposals(tried, refused)
@@ -39,7 +47,7 @@ def choose_strings(config: Input) -> Iterator[tuple[str, Value, str]]:
         refused = refused or "the supply does not feed an LED and a current source"
     *_, driven = _drives(config)
     least = min(_currents(driven), default=driven.parameters.emitter.current_ma)
-    lowest = [c for c in _candidates(driven) if c[0].parameters.emitter.current_ma == least]
+    lowest = [c for c in _candidates(driven, steady) if c[0].parameters.emitter.current_ma == least]
     if lowest:
         tried, longest = min(lowest, key=_broken)
         yield from _drive_proposals(tried, refused)
@@ -50,7 +58,7 @@ def choose_resistors(config: Input, reason: str) -> Iterator[tuple[str, Value, s
     """The same without current sources, for a reason."""
     fixed = replace(config, automatic=config.automatic - {"emitter.drive"})
     yield "emitter.drive", "resistor", reason
-    yield from choose_strings(_driven(fixed, "resistor"))
+    yield from choose_strings(_driven(fixed, "resistor"), steady=True)
 
 
 def _drives(config: Input) -> Iterator[Input]:
@@ -68,13 +76,14 @@ def _driven(config: Input, drive: str) -> Input:
     return config.with_values(values)
 
 
-def _candidates(config: Input) -> Iterator[tuple[Input, int]]:
+def _candidates(config: Input, steady: bool) -> Iterator[tuple[Input, int]]:
     """Currents, packages and lengths to try, in the order in which they are preferred."""
     for current in _currents(config):
-        for resistor in _resistors(config):
-            for longest in _lengths(config):
+        for lengths_tried in _lengths(config, steady):
+            for resistor in _resistors(config):
                 values = {"emitter.current_ma": current, "emitter.resistor": resistor}
-                yield config.with_values(values), longest
+                tried = config.with_values(values)
+                yield from ((tried, longest) for longest in lengths_tried)
 
 
 def _drive_proposals(config: Input, refused: str) -> Iterator[tuple[str, Value, str]]:
@@ -109,11 +118,12 @@ def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
             f"supply.max_ma, emitter.max_heat_w = {p.emitter.max_heat_w:g} and the ratings"
         )
     yield "emitter.current_ma", p.emitter.current_ma, reason
-    yield (
-        "emitter.string_leds",
-        max(lengths(sum(p.grid.columns), longest)),
-        f"{len(strings)} strings: as few as {volts:g} V and the ratings allow",
-    )
+    leds = max(lengths(sum(p.grid.columns), longest))
+    reason = f"{len(strings)} strings: as few as {volts:g} V and the ratings allow"
+    if p.emitter.drive == "resistor" and leds < longest_with_resistor(config):
+        left = 100 * (1 - leds * config.parts.emitter.led.forward_voltage_v / volts)
+        reason = f"{len(strings)} strings: {left:.0f} % of {volts:g} V is left to each resistor"
+    yield "emitter.string_leds", leds, reason
     yield (
         "emitter.resistor",
         p.emitter.resistor,
@@ -198,17 +208,18 @@ def _resistors(config: Input) -> Iterator[str]:
     yield from sorted(known, key=lambda name: math.prod(known[name].body_mm[:2]))
 
 
-def _lengths(config: Input) -> Iterator[int]:
-    """Lengths of the longest string to try, in descending order."""
+def _lengths(config: Input, steady: bool) -> Iterator[tuple[int, ...]]:
+    """Lengths of the longest string to try, in descending order; in a second group those that leave
+    a resistor too little to hold the current."""
     longest = longest_string(config)
     if "emitter.string_leds" not in config.automatic:
         longest = min(longest, config.parameters.emitter.string_leds)
-        if longest:
-            yield longest
+        yield (longest,) if longest else ()
         return
-    cells, before = sum(config.parameters.grid.columns), 0
-    for most in range(longest, 0, -1):
-        count = math.ceil(cells / most)
-        if count != before:
-            yield most
-        before = count
+    cells, most = sum(config.parameters.grid.columns), longest
+    if steady and config.parameters.emitter.drive == "resistor":
+        most = min(longest_with_resistor(config, STEADY_SHARE), longest)
+    counts = sorted({math.ceil(cells / each) for each in range(1, longest + 1)})
+    each_length = [math.ceil(cells / count) for count in counts]
+    yield tuple(leds for leds in each_length if leds <= most)
+    yield tuple(leds for leds in each_length if leds > most)

@@ -146,14 +146,14 @@ def drawn_by_controller_ma(config: Input) -> float:
 
 
 def _refuse_fuse(config: Input, strings: Strings, faults: Diagnostics) -> None:
-    """Refuse a fuse too small for LEDs and controller; a breakout's fuse carries the controller
-    where both have one supply."""
+    """Refuse a fuse too small for controller and LEDs, their strings at the worst case; a
+    breakout's fuse carries the controller where both have one supply."""
     p = config.parameters
     output_v = config.parts.flange.regulator.output_v
     fed_ma = drawn_by_controller_ma(config) * output_v / p.supply.voltage_v
     if input_board(config) == "breakout" and is_regulated(config):
         fed_ma = 0.0
-    drawn_ma = sum(strings.current_ma) + fed_ma
+    drawn_ma = sum(string.high_ma for string in strings.strings) + fed_ma
     allowed_ma = 1000 * FUSE_SHARE * config.parts.flange.fuse.rated_a
     faults.unless(
         drawn_ma <= allowed_ma,

@@ -97,7 +97,8 @@ def _channel(config: Input, protection: Protection | None) -> Channel:
         pull_up + (0.0 if own else mux.on_resistance_ohm)
     )
     full_v = supply - pull_up * min(saturated, detector.light_current_ua * 1e-6)
-    line_pf, series_us = mux.common_pf + controller.input_pf, 0.0
+    wire_pf, series_us = WIRE_PF_PER_M * _wire_mm(config) / 1000, 0.0
+    line_pf = mux.common_pf + wire_pf + controller.input_pf
     if protection:
         line_pf += protection.diode_pf + protection.capacitor_pf
         pin_pf = protection.pin_pf + protection.capacitor_pf
@@ -119,6 +120,7 @@ def _channel(config: Input, protection: Protection | None) -> Channel:
         on_resistance_ohm=mux.on_resistance_ohm,
         detector_pf=detector.capacitance_pf,
         line_pf=line_pf,
+        wire_pf=wire_pf,
         step_v=step_v,
         full_scale_v=full_v,
         dark_v=dark_v,
@@ -128,6 +130,19 @@ def _channel(config: Input, protection: Protection | None) -> Channel:
         gain=detector.gain,
         base_pf=detector.base_pf,
     )
+
+
+WIRE_PF_PER_M = 100.0
+"""Of a wire between grounded ones: 96 pF/m in 3M's cable 3560 (TS-0672-B, PVC, AWG 26)."""
+LEAST_WIRE_MM = 300.0  # that a channel is made for: users cut their wires longer
+ENDS_MM = 60.0  # of a wire on its finger and in its bends, at most
+
+
+def _wire_mm(config: Input) -> float:
+    """Length of a signal's wire, or more: the boards that it ends on are not known yet."""
+    p = config.parameters.wiring
+    travel_mm = config.parts.coupling.gripper.stroke_mm / 2
+    return max(LEAST_WIRE_MM, p.controller_mm + p.slack_mm + travel_mm + ENDS_MM)
 
 
 def _refuse_slow(

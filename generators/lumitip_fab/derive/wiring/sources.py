@@ -60,11 +60,11 @@ def resistor_string(config: Input, leds: int, current_ma: float) -> String:
     return String(leds, ohm, 1000 * drop / ohm, low, high)
 
 
-def longest_with_resistor(config: Input) -> int:
-    """Most LEDs in a string that leave its resistor a tenth of the supply; 0 if not even one."""
+def longest_with_resistor(config: Input, share: float = LEAST_RESISTOR_SHARE) -> int:
+    """Most LEDs in a string that leave its resistor a share of the supply; 0 if not even one."""
     p = config.parameters
     led, volts = config.parts.emitter.led, p.supply.voltage_v
-    return int(volts * (1 - LEAST_RESISTOR_SHARE) / led.forward_voltage_v)
+    return int(volts * (1 - share) / led.forward_voltage_v)
 
 
 def _extreme_ma(led: Led, volts: float, leds: int, ohm: float, at_ma: float, sign: int) -> float:

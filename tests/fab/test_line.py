@@ -1,0 +1,45 @@
+"""The capacitance of a wire to the controller, in the firmware's wait."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from lumitip_fab.config.load import load
+from lumitip_fab.derive import derive
+from lumitip_fab.design.electrical import Channel
+
+Write = Callable[[str], Path]
+EACH = '[receiver]\nload = "each"\npull_up_ohm = "auto"\n'
+PF_PER_M = 100.0
+DEFAULT_MM = 150.0  # from the fingers to the controller
+
+
+@pytest.fixture
+def channel(file: Write) -> Callable[[str], Channel]:
+    def of(text: str) -> Channel:
+        return derive(load(file(EACH + text))).electrical.channel
+
+    return of
+
+
+def test_a_longer_wire_has_more_capacitance_and_a_longer_wait(
+    channel: Callable[[str], Channel],
+) -> None:
+    usual, longer, longest = (
+        channel(f"[wiring]\ncontroller_mm = {mm}\n") for mm in (DEFAULT_MM, 1000.0, 2000.0)
+    )
+    assert usual.wire_pf == 0.3 * PF_PER_M, "as a wire of 300 mm, at least"
+    assert longest.wire_pf - longer.wire_pf == pytest.approx(PF_PER_M)
+    assert longest.line_pf - longer.line_pf == pytest.approx(PF_PER_M)
+    assert usual.wait_us and longer.wait_us and longest.wait_us
+    share = (longest.wait_us - longer.wait_us) / (longer.wait_us - usual.wait_us)
+    assert share == pytest.approx(PF_PER_M / (longer.wire_pf - usual.wire_pf))
+
+
+def test_slack_and_stroke_count(channel: Callable[[str], Channel]) -> None:
+    far = "[wiring]\ncontroller_mm = 1000.0\nslack_mm = {}\n"
+    slack, less = (channel(far.format(mm)) for mm in (140.0, 40.0))
+    assert slack.wire_pf - less.wire_pf == pytest.approx(0.1 * PF_PER_M)
+    wide = '[coupling]\ngripper = "robotiq_2f140"\n'
+    assert channel(far.format(40.0) + wide).wire_pf > less.wire_pf
