@@ -42,7 +42,7 @@ def foot_beside_the_pad(part: Body) -> Body:
 
 
 def foot_at_the_tip_gone(part: Body) -> Body:
-    return part - box((2, -15, 6), (7, -10, 9.25))
+    return part - box((0.2, -15, 6), (5, -10, 9.25))
 
 
 def against_the_block(part: Body) -> Body:

@@ -49,7 +49,7 @@ def carved(copied: Path, file: str, damage: Damage) -> set[str]:
     return failing(copied, "wrap")
 
 
-# In the sensor frame: the published tip edge is at y = 21.85, with slots of 0.6 mm from x = 5.18 to
+# In the sensor frame: the published tip edge is at y = 21.85, with slots of 0.6 mm from x = 2.84 to
 # 13.25; rim plane at z = -1.6, bed of the mould at 2.3, weir from y = -36 to -32.6 at the gripper
 # end, prop from y = -44.6 to -37.4.
 
@@ -123,11 +123,11 @@ def test_a_prop_that_an_earlier_design_left_is_seen(
 
 
 def slot_filled(part: Body) -> Body:
-    return part + box((5, 21.2, -1.9), (13.4, 21.85, -1.6))
+    return part + box((2.5, 21.2, -1.9), (13.4, 21.85, -1.6))
 
 
 def slot_shallow(part: Body) -> Body:
-    return part + box((5, 21.0, -2.0), (13.4, 21.4, -1.6))
+    return part + box((2.5, 21.0, -2.0), (13.4, 21.4, -1.6))
 
 
 def slot_too_wide(part: Body) -> Body:

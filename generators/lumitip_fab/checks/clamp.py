@@ -35,7 +35,7 @@ from lumitip_fab.design.frames import (
     mould_bed_to_sensor,
     mount_to_sensor,
 )
-from lumitip_fab.design.making import TIP_LAND_FRACTION
+from lumitip_fab.design.making import tip_stop_mm
 from lumitip_fab.errors import OutputError
 
 READS = ("mould/*.stl", "backing/*.stl", "interface/*.stl")
@@ -134,7 +134,7 @@ def measure_over_pads(held: Held) -> Iterator[Measurement]:
     inside = [_inside_mm(cut, pad) for pad in pads]
     least = design.mould.pad_mm / 2 - HOLE_MM
     yield held.figure("over_pads", np.min(inside), least, math.inf, note="of a foot round each pad")
-    half, tip_y = design.outline.tip_width_mm * TIP_LAND_FRACTION / 2, -design.outline.tip_y_mm
+    half, tip_y = tip_stop_mm(design.outline.tip_width_mm) / 2, -design.outline.tip_y_mm
     spanned = shapely.MultiPoint([*pads, (-half, tip_y), (half, tip_y)]).convex_hull
     feet = [shapely.box(*_turned(foot)).intersection(cut).centroid for foot in clamp.feet[2:]]
     within = np.min([_inside_mm(spanned, foot) for foot in feet])

@@ -20,6 +20,7 @@ from lumitip_fab.checks.result import Measurement, Subject, unreadable
 from lumitip_fab.checks.walls import Mask, beside, measure_relief, walls
 from lumitip_fab.design import Box, Design, Finger, Insert
 from lumitip_fab.design.frames import applied, backing_bed_to_sensor, mould_bed_to_sensor
+from lumitip_fab.design.making import tip_stop_mm
 from lumitip_fab.errors import OutputError
 
 READS = ("mould/*", "backing/*_backing.stl")
@@ -52,6 +53,7 @@ _LINE_MM = 0.15  # how far under the plate the tip line is probed
 GAP_MM = (0.10, 0.30)
 LEAST_DRAFT_DEG = 2.0
 DRAFT_MESH_DEG = 0.25  # of triangles on curved walls
+_BESIDE_MM = 0.5  # from the stop at the tip to where the silicone is as thick as it should be
 _ABOVE_MM = 0.05  # stops and weir end at the rim itself
 _STEP_MM = 0.5
 _GAP_SIDE_MM = 0.01  # on the side of a recess itself nothing is probed
@@ -157,8 +159,10 @@ def _within(at: solids.Vectors, box: Box) -> Mask:
 def _tip_thickness(probe: Probe, file: str) -> Measurement:
     """The silicone at the tip edge, beside the stop in its middle."""
     outline, wanted = probe.design.outline, probe.design.mould.tip_silicone_mm
-    half = outline.tip_width_mm / 2
-    x = np.concatenate([np.linspace(-0.95, -0.5, 10), np.linspace(0.5, 0.95, 10)]) * half
+    right = np.linspace(
+        tip_stop_mm(outline.tip_width_mm) / 2 + _BESIDE_MM, 0.475 * outline.tip_width_mm, 10
+    )
+    x = np.concatenate([-right, right])
     depth = probe.depths_mm(np.column_stack([x, np.full(len(x), outline.tip_y_mm)]))
     note = "at the tip edge, beside the stop"
     worst, by = depth[np.abs(depth - wanted).argmax()], THICKNESS_MM
@@ -180,7 +184,7 @@ def _stops(probe: Probe, file: str) -> Iterator[Measurement]:
         worst = float(max(np.abs(tops).max(), np.abs(feet).max()))
         note = "top against the rim plane, and floor around it"
         yield Measurement("mould.stops", f"{file}: pad {number}", worst, 0, STOPS_MM, "mm", note)
-    along = np.linspace(-1, 1, 9) * outline.tip_width_mm / 8
+    along = np.linspace(-0.45, 0.45, 9) * tip_stop_mm(outline.tip_width_mm)
     line = probe.depths_mm(np.column_stack([along, np.full(9, outline.tip_y_mm - _LINE_MM)]))
     of, note = Subject("mould", file), "top against the rim plane"
     yield of.figure("stops", np.abs(line).max(), 0, STOPS_MM, note=note, at="tip line")

@@ -8,8 +8,15 @@ from lumitip_fab.design.shape import Box, Point
 LEDGE_MM = 0.5
 """Between the weir and the trough of a mould."""
 
-TIP_LAND_FRACTION = 1 / 3
-"""Of the straight tip edge, on which a finger stands in its mould; the rest keeps its silicone."""
+TIP_STOP_FRACTION, MOST_TIP_STOP_FRACTION, LEAST_TIP_STOP_MM = 1 / 6, 1 / 3, 4.0
+
+
+def tip_stop_mm(tip_width_mm: float) -> float:
+    """Width of the stop under the middle of a straight tip edge (mm), on which a finger stands in
+    its mould; the rest keeps its silicone."""
+    wanted_mm = max(TIP_STOP_FRACTION * tip_width_mm, LEAST_TIP_STOP_MM)
+    return min(wanted_mm, MOST_TIP_STOP_FRACTION * tip_width_mm)
+
 
 FOOT_CHAMFER_MM = 0.4
 """Of mould and clamp where they stand on the bed: the first layer spreads."""

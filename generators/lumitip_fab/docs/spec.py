@@ -220,11 +220,12 @@ def _of_the_wrap(design: Design) -> Iterator[Row]:
     """The silicone round the tip, or that the skin ends at its edge."""
     for prop in design.props:
         length = design.mould.lip_length_mm(design.outline, design.tip)
-        skin = design.mould.tip_silicone_mm
+        skin, (left, right) = design.mould.tip_silicone_mm, design.tip.slots
         yield from rows_of(
             "wrap",
             prop=prop,
             slot_mm=design.tip.slot_mm,
+            bare_edge_mm=right.x_min_mm - left.x_max_mm,
             length_mm=length,
             thick_mm=prop.level_mm(design.outline.tip_y_mm) + skin,
             bare_mm=design.tip.edge_mm + skin,

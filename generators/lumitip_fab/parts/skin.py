@@ -18,7 +18,7 @@ from build123d import Edge, Face, Plane, Solid, Vector, Wire
 from numpy.typing import NDArray
 
 from lumitip_fab.design import Board, Box, Cubic, Mould, Outline, Point, Stack
-from lumitip_fab.design.making import TIP_LAND_FRACTION
+from lumitip_fab.design.making import tip_stop_mm
 from lumitip_fab.parts.shapes import box_face, box_solid
 
 FOOT_MM = 0.1  # a stop widens by this at the most
@@ -118,7 +118,7 @@ def stops(stack: Stack, outline: Outline, mould: Mould) -> list[Solid]:
     They reach into the mould's wall, because a slit between pad and wall could not be printed.
     """
     inside = mould.wall_gap_mm + mould.wall_mm / 2
-    tip_half = outline.tip_width_mm * TIP_LAND_FRACTION / 2
+    tip_half = tip_stop_mm(outline.tip_width_mm) / 2
     tip_y = outline.tip_y_mm
     line = Box(-tip_half, tip_half, tip_y - TIP_LAND_MM, tip_y + inside)
     solids = [_drafted(box_face(line), stack, mould)]

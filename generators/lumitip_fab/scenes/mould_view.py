@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from lumitip_fab.design import Board, Box, Clamp, Mould, Outline, Point
-from lumitip_fab.design.making import TIP_LAND_FRACTION
+from lumitip_fab.design.making import tip_stop_mm
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.scenes.cut import rings_of
 from lumitip_fab.scenes.drawing import Label, Points, Sheet, View, silhouette, visible_lines
@@ -66,7 +66,7 @@ def mould_view(
 
 def _filled(outline: Outline, mould: Mould) -> shapely.Geometry:
     """Where silicone is under the plate: round the stops, in the sensor frame."""
-    line_y, half = outline.tip_y_mm - _TIP_LINE_MM, outline.tip_width_mm * TIP_LAND_FRACTION / 2
+    line_y, half = outline.tip_y_mm - _TIP_LINE_MM, tip_stop_mm(outline.tip_width_mm) / 2
     stops = [shapely.box(-half, line_y, half, outline.tip_y_mm)]
     for x, y in mould.pads:
         out = math.copysign(outline.half_width_at(y), x)
@@ -76,7 +76,7 @@ def _filled(outline: Outline, mould: Mould) -> shapely.Geometry:
 
 def _stops(outline: Outline, mould: Mould) -> list[Label]:
     """What the plate rests on, and where it is taken out: on the left of the page, which is +x."""
-    tip_half = outline.tip_width_mm * TIP_LAND_FRACTION / 2
+    tip_half = tip_stop_mm(outline.tip_width_mm) / 2
     gap_y = mould.grip.centre_y_mm
     plate_y = (outline.tip_y_mm + gap_y) / 2
     wall = outline.half_width_at(gap_y) + mould.wall_gap_mm + mould.wall_mm / 2

@@ -33,7 +33,7 @@ def choose_strings(config: Input, steady: bool = False) -> Iterator[tuple[str, V
 
     Args:
         config: the input.
-        steady: prefer strings that leave a resistor `STEADY_SHARE`, as where the drive is automatic.
+        steady: prefer strings that leave a resistor `STEADY_SHARE`, as with an automatic drive.
     """
     refused, steady = "", steady or "emitter.drive" in config.automatic
     for driven in _drives(config):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.design import Board, Box, Outline, Stack, Tip
-from lumitip_fab.design.making import TIP_LAND_FRACTION
+from lumitip_fab.design.making import MOST_TIP_STOP_FRACTION, tip_stop_mm
 
 LIP = "mould.tip_lip_mm"
 SLOT_MM = 0.6  # deep: with the mould's gap more silicone than the plate's edge is thick
@@ -32,7 +32,7 @@ class _Edge:
     def ends_mm(self) -> tuple[float, float]:
         """Ends of the right slot, along the edge."""
         outline = self.outline
-        inner = outline.tip_width_mm * TIP_LAND_FRACTION / 2 + FROM_STOP_MM
+        inner = tip_stop_mm(outline.tip_width_mm) / 2 + FROM_STOP_MM
         return inner, outline.tip_width_mm / 2 - FROM_END_MM
 
     @property
@@ -50,7 +50,7 @@ class _Edge:
             outer - inner >= LEAST_WIDTH_MM,
             "tip_lip_narrow",
             edge_mm=self.outline.tip_width_mm,
-            least_mm=wanted_mm / (1 - TIP_LAND_FRACTION),
+            least_mm=wanted_mm / (1 - MOST_TIP_STOP_FRACTION),
         )
         pocket_y = self.board.pocket.y_max_mm + (self.board.roof_mm if self.stack.sunk else 0.0)
         left_mm = self.outline.tip_y_mm - SLOT_MM - pocket_y

@@ -14,7 +14,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.finger.strength import Body
 from lumitip_fab.design import Box, Cabling, Fastener, Finger, Key, Mould, Point, Printing
 from lumitip_fab.design.clamp import PITCH_MM, Clamp
-from lumitip_fab.design.making import TIP_LAND_FRACTION
+from lumitip_fab.design.making import tip_stop_mm
 from lumitip_fab.design.print_time import BRIM_MM
 
 SCREW = "M3"
@@ -160,7 +160,7 @@ def _at_tip(plan: _Plan) -> Box | None:
     """The right one of the feet towards the tip line: as near the wedge as the back is bare, and
     inside the triangle between the stops, so that no stop is lifted."""
     outline, (x_pad, y_pad) = plan.body.outline, plan.mould.pads[1]
-    line = outline.tip_width_mm * TIP_LAND_FRACTION / 2
+    line = tip_stop_mm(outline.tip_width_mm) / 2
     lowest = plan.behind_y_mm() + APART_MM + BAR_MM / 2
     high = plan.body.tip.slant_start_y_mm - FOOT_HALF_MM - 2 * APART_MM
     for y in np.arange(high, lowest - 1e-9, -STEP_MM):
