@@ -12,6 +12,7 @@ from lumitip_fab.checks.result import Measurement
 EDGE_MM = 0.05
 ANGLE_DEG = 0.5
 BESIDE_MM = 0.1  # a slot
+NEAR_MM = 0.05  # the edge, where its thickness is measured
 INSET_MM = 0.3  # of the rays from both ends of the wedge
 _DOWN = np.array([0.0, 0.0, -1.0])
 
@@ -20,16 +21,21 @@ def measure_tip(part: Printed) -> Iterator[Measurement]:
     """The wedge: thickness at the tip edge and angle."""
     outline, tip = part.design.outline, part.design.tip
     slope = np.tan(np.radians(tip.angle_deg))
-    xs = beside(part.design, np.linspace(-0.45, 0.45, 41) * outline.tip_width_mm)
+    xs = beside(part.design, np.linspace(-0.45, 0.45, 81) * outline.tip_width_mm)
+    back = np.zeros(len(xs))  # of the edge, in a slot
     for slot in tip.slots:
-        xs = xs[(xs < slot.x_min_mm - BESIDE_MM) | (xs > slot.x_max_mm + BESIDE_MM)]
-    edge = _thickness(part, np.array([(x, outline.tip_y_mm - 0.05) for x in xs])) - 0.05 * slope
+        back[(xs > slot.x_min_mm) & (xs < slot.x_max_mm)] = slot.length_mm
+        for end in (slot.x_min_mm, slot.x_max_mm):
+            back[np.abs(xs - end) < BESIDE_MM] = np.nan
+    xs, back = xs[~np.isnan(back)], back[~np.isnan(back)]
+    ends = outline.tip_y_mm - back
+    edge = _thickness(part, np.column_stack([xs, ends - NEAR_MM])) - (back + NEAR_MM) * slope
     yield part.near("tip_edge", edge, tip.edge_mm, EDGE_MM)
     board = part.design.board
     start = max(tip.slant_start_y_mm, board.pocket.y_max_mm + board.roof_mm)
-    inset = min(INSET_MM, (outline.tip_y_mm - start) / 4)
-    low, high = start + inset, outline.tip_y_mm - inset
-    thick = _thickness(part, np.array([(x, y) for x in xs for y in (low, high)]))
+    inset = np.minimum(INSET_MM, (ends - start) / 4)
+    low, high = start + inset, ends - inset
+    thick = _thickness(part, np.column_stack([np.repeat(xs, 2), np.stack([low, high], 1).ravel()]))
     angles = np.degrees(np.arctan((thick[::2] - thick[1::2]) / (high - low)))
     yield part.near("slant", angles, tip.angle_deg, ANGLE_DEG, unit="°")
 

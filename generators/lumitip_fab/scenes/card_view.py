@@ -13,12 +13,11 @@ from lumitip_fab.scenes.dimensions import circle
 from lumitip_fab.scenes.drawing import Points, Sheet, View
 from lumitip_fab.scenes.finger_views import paint
 
-SCALE = 1.1
 ANGLE_DEG = 25.0
 """Of the card's edge."""
 _WAY = np.array([math.cos(math.radians(ANGLE_DEG)), math.sin(math.radians(ANGLE_DEG))])
 LIGHT, DARK = (240, 229, 115), (3, 32, 77)  # as in the live view
-_FRONT = View(np.eye(3)).enlarged(SCALE)
+_FRONT = View(np.eye(3)).enlarged(1.1)
 _WORDS = 1.3
 _CARD, _EDGE_MM = "#f3ead2", 60.0
 _BESIDE_MM, _PAST_MM, _NAME_MM = 14.0, 12.0, 6.5
@@ -38,31 +37,33 @@ def card_view(finger: Finger, layers: Mapping[str, Mesh], holes_mm: Sequence[flo
     """
     sheet, cells = Sheet(words_scale=_WORDS), np.array(finger.cells)
     seen = {k: layers[k] for k in ("interface", "backing", "film") if k in layers}
+    view = _FRONT.fitted(seen.values())
+    scale = view.scale
     with sheet.group("finger"):
-        paint(sheet, _FRONT, seen)
+        paint(sheet, view, seen)
         for cell, hole_mm in zip(cells, holes_mm, strict=True):
-            sheet.area([SCALE * circle((cell[0], cell[1]), hole_mm / 2)], "part", "#fff")
+            sheet.area([scale * circle((cell[0], cell[1]), hole_mm / 2)], "part", "#fff")
     left, right = float(sheet.low[0]), float(sheet.high[0])
     middle, radius = cells.mean(axis=0), _room_mm(cells) / 2
     card = _below(middle) & shapely.box(
-        left / SCALE - _PAST_MM, cells[:, 1].min() - _PAST_MM, right / SCALE + 2.0, 999.0
+        left / scale - _PAST_MM, cells[:, 1].min() - _PAST_MM, right / scale + 2.0, 999.0
     )
     with sheet.group("card"):
-        sheet.area([SCALE * ring for ring in rings_of(card)], "body", _CARD)
-    aside = np.array([right + _BESIDE_MM + SCALE * (radius - float(cells[:, 0].min())), 0.0])
+        sheet.area([scale * ring for ring in rings_of(card)], "body", _CARD)
+    aside = np.array([right + _BESIDE_MM + scale * (radius - float(cells[:, 0].min())), 0.0])
     with sheet.group("picture"):
         for cell in cells:
             room = shapely.Polygon(cell + _SHARE * radius * _HEXAGON)
             free = 1.0 - (room & card).area / room.area
-            sheet.area([SCALE * np.array(room.exterior.coords) + aside], "part", _colour(free))
-    half = SCALE * (np.ptp(cells[:, 0]) / 2 + 2 * radius) / _WAY[0]
-    at = SCALE * middle + aside
+            sheet.area([scale * np.array(room.exterior.coords) + aside], "part", _colour(free))
+    half = scale * (np.ptp(cells[:, 0]) / 2 + 2 * radius) / _WAY[0]
+    at = scale * middle + aside
     sheet.lines([np.array([at - half * _WAY, at + half * _WAY])], "estimate")
     foot = float(sheet.low[1]) - _NAME_MM
-    for x, name in ((SCALE * middle[0], "The card, seen from the front"), (at[0], "The picture")):
+    for x, name in ((scale * middle[0], "The card, seen from the front"), (at[0], "The picture")):
         sheet.words(float(x), foot, name, "name", "middle")
     sheet.cover(float(at[0]), foot - 1.0)
-    return sheet.svg({"data-scale": SCALE, "data-angle-deg": ANGLE_DEG})
+    return sheet.svg({"data-scale": scale, "data-angle-deg": ANGLE_DEG})
 
 
 def _below(middle: Points) -> shapely.Polygon:

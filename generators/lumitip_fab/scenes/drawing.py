@@ -173,6 +173,9 @@ _EDGE_ON = 1e-2  # sine of the angle of a face to the line of sight, at most
 _SLIT_MM = 0.01  # half the width of a slit in a silhouette that is closed
 
 
+TALLEST_MM = 110.0
+
+
 @dataclass(frozen=True, eq=False)
 class View:
     """A direction of view; the page's x and y and the way to the viewer, as rows, which are as
@@ -183,6 +186,17 @@ class View:
     def enlarged(self, scale: float) -> "View":
         """The same view at another scale of the page."""
         return View(self.axes * scale)
+
+    def fitted(self, meshes: Iterable[Mesh], tallest_mm: float = TALLEST_MM) -> "View":
+        """The same view, smaller where things would be taller on the page than allowed: a page of
+        the manual has room for a step's words, too."""
+        ys = np.concatenate([self.seen(mesh.points_mm)[:, 1] for mesh in meshes])
+        return self.enlarged(min(1.0, tallest_mm / float(np.ptp(ys))))
+
+    @property
+    def scale(self) -> float:
+        """Lengths on the page to those of the thing."""
+        return float(np.linalg.norm(self.axes[0]))
 
     def seen(self, points_mm: Points) -> Points:
         """Points as x and y on the page and height above it, shape `(n, 3)`."""

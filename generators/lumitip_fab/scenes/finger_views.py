@@ -20,6 +20,7 @@ RAISED_MM = 22.0  # of the board over its place
 _BEHIND = np.diag([-1.0, 1.0, -1.0, 1.0])  # half a turn about y: the back up, the tip away
 _PLAN = View(np.eye(3)).enlarged(PLAN_SCALE)
 _WORDS_MM = 44.0
+_CABLE_MM = 80.0  # tall at most, above the ways of the cables
 _CABLE_WORDS = 1.3  # of a drawing on a full page
 _PAST_MM = 22.0  # of the cable, beyond the mount face
 _ABREAST_MM = 0.5  # from wire to wire of a cable, as it is drawn
@@ -67,8 +68,8 @@ def cable_view(
         stack: for the plate.
     """
     sheet = Sheet(words_scale=_CABLE_WORDS)
-    eye = view(AZIMUTH_DEG, ELEVATION_DEG).enlarged(SCALE)
     behind = {name: mesh.moved(_BEHIND) for name, mesh in layers.items()}
+    eye = view(AZIMUTH_DEG, ELEVATION_DEG).enlarged(SCALE).fitted(behind.values(), _CABLE_MM)
     paint(sheet, eye, {"board": behind["board"]})
     hidden, open_ways = _wires(finger, mount, stack, len(colours))
     _lay(sheet, eye, colours, hidden)
