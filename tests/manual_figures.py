@@ -1,5 +1,6 @@
 """The build manual against the design, the notes and the drawings beside it; PDF against HTML."""
 
+import math
 import re
 from base64 import b64decode
 from collections.abc import Iterator
@@ -205,12 +206,19 @@ def _wrong_units(manual: Manual, design: Design) -> list[str]:
     if not design.packages.photodetector.mark_is_known:
         volts.add(LIT_V)
     heat = {figure for s in design.heat for figure in (s.temperature_c, s.limit_c)}
-    allowed = {"h": {design.mould.cure_h, design.mould.glue_hard_h}, "°C": heat, "V": volts}
+    hours = {design.mould.cure_h, design.mould.glue_hard_h, *_soldering_h(manual)}
+    allowed = {"h": hours, "°C": heat, "V": volts}
     matches = re.findall(r"(?<![\w.])(\d+(?:\.\d+)?) (h|°C|V)\b", " ".join(manual.blocks))
     found = {(float(value), unit) for value, unit in matches}
     wrong = [f"{value:g} {unit}" for value, unit in sorted(found) if value not in allowed[unit]]
     lost = [f"no {unit}" for unit in allowed if unit not in {u for _, u in found}]
     return wrong + lost
+
+
+def _soldering_h(manual: Manual) -> set[float]:
+    """Hours to solder all parts by hand: a minute and a half for each, rounded up."""
+    counted = re.search(r"for all (\d+) parts by hand", " ".join(manual.blocks))
+    return {math.ceil(int(counted[1]) * 1.5 / 60)} if counted else set()
 
 
 def _noted(outputs: Path, name: str, row: re.Pattern[str], design: Design) -> list[tuple[str, ...]]:

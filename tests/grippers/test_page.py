@@ -28,7 +28,7 @@ from lumitip_fab.scenes.coupling_view import SCALE, coupling_view
 from lumitip_fab.scenes.dimensions import LETTER_MM, WORDS_MM
 
 Box = tuple[float, float, float, float]
-NOT_DRAWN = {"force_n", "envelope.mass_kg", "envelope.payload_kg"}
+NOT_DRAWN = {"force_n", "supply_a", "envelope.mass_kg", "envelope.payload_kg"}
 
 
 def gripper_of(name: str, config: Input) -> Gripper:

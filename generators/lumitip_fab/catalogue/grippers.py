@@ -86,6 +86,8 @@ class Gripper(Traced):
     """Opening of the gripper between its own pads."""
     force_n: float | None = Field(default=None, gt=0, le=5000)
     """Greatest force that it closes with; left out where it is not known (N)."""
+    supply_a: float | None = Field(default=None, gt=0, le=100)
+    """Greatest current from its supply; left out where it is not known (A)."""
     pad_w_mm: Length
     """Distance of the gripper's own pad face before the bolts' axes."""
     tilt_deg: float = Field(ge=-10, le=10)

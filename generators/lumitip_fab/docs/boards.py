@@ -1,5 +1,6 @@
 """The manual's steps of the boards: polarity and order; soldering and measuring."""
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Iterator
 
@@ -11,6 +12,7 @@ from lumitip_fab.docs.protection import boards_of_later, protection_note
 from lumitip_fab.pipeline.artefact import Files
 from lumitip_fab.text import as_written, listed, passage
 
+MINUTES_A_PART = 1.5  # of soldering by hand, assumed
 PROUD_MM = 0.05
 """So much thicker than its pocket is deep a board may be."""
 _PROBE_V = 0.15  # less than at the working current: a diode test drives about 1 mA
@@ -43,8 +45,12 @@ def soldering(design: Design, files: Files) -> str:
     shown += [face for board in auxiliary for face in faces(board) if face not in tried]
     behind = any(part.side == "back" for part in design.emitter.parts)
     reflowed = _reflowed(design)
+    count = sum(len(finger.parts) for finger in design.fingers)
+    count += sum(len(board.components) for board in auxiliary)
     return _text(
         "boards_soldered",
+        count=count,
+        hours=math.ceil(count * MINUTES_A_PART / 60),
         broken=_text("broken", board=design.board) + "\n" if design.panels else "",
         solder=design.heat_steps["solder"],
         reflowed=reflowed,

@@ -190,7 +190,7 @@ def _tried(design: Design) -> str:
     for _ in design.props:
         lip_mm = mould.lip_length_mm(design.outline, design.tip)
         beside += ";" if beside else ":"
-        beside += f" and the back of the tip, {lip_mm + 1:.0f} mm from its edge"
+        beside += f" and a strip of {lip_mm + 1:.0f} mm along the tip's edge on its back"
     first = _text(
         "primed" if primed else "unprimed",
         primer=mould.primer,

@@ -94,7 +94,8 @@ def _built_in(design: Design, flange: Flange) -> Iterator[str]:
     yield _text("gripper_off")
     hard_h = design.mould.glue_hard_h
     wait = f"for {hard_h:g} h" if hard_h else "for as long as its label says"
-    yield _text("closed", flange=flange, glue=design.strength.glue, wait=wait)
+    out_mm = flange.pin_length_mm - flange.pin_depth_mm
+    yield _text("closed", flange=flange, glue=design.strength.glue, wait=wait, out_mm=out_mm)
     yield _text("bolted", flange=flange, bolts=len(flange.bolts))
     yield from _powered(design)
 
@@ -146,7 +147,15 @@ def gripper_cable(design: Design) -> str:
     supply = _from_robot(design, pads) if pads else ""
     own = [part.ref for part in headers if {net for _, net in part.nets} - {*board.supplies}]
     lines = _text("lines", lines=listed(own)) if own else ""
-    return _text("gripper_cable", supply=supply or _text("behind_fuse"), lines=lines)
+    drawn = _drawn(design, len(pads)) if design.mount.supply_a else ""
+    return _text("gripper_cable", supply=supply or _text("behind_fuse"), lines=lines, drawn=drawn)
+
+
+def _drawn(design: Design, pads: int) -> str:
+    """What the gripper takes, against what the contacts of its supply carry."""
+    most_a = pads * SLOT_MM2 * design.cabling.most_a_per_mm2
+    choice = _text("drawn_more" if design.mount.supply_a > most_a else "drawn_less")
+    return _text("drawn", mount=design.mount, choice=choice)
 
 
 def _from_robot(design: Design, pads: list[str]) -> str:

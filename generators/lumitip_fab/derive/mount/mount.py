@@ -78,6 +78,7 @@ def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Diagnostic
         letter=_letter(config, gripper, faults),
         lugs=(),
         force_n=gripper.force_n or 0.0,
+        supply_a=gripper.supply_a or 0.0,
         unsure=unsure_figures(gripper),
     )
     return replace(mount, lugs=finger_lugs(config, mount, outline))

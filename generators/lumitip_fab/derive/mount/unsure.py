@@ -6,8 +6,8 @@ from lumitip_fab.catalogue.record import Confidence, Strict, Traced
 from lumitip_fab.design import Unsure
 from lumitip_fab.text import table_of
 
-_UNITS = {"mm": " mm", "deg": "°", "n": " N"}
-_NOT_PRINTED = {"force_n", "stroke_mm", "height_mm", "robot_mm", "iso"}
+_UNITS = {"mm": " mm", "deg": "°", "n": " N", "a": " A"}
+_NOT_PRINTED = {"force_n", "supply_a", "stroke_mm", "height_mm", "robot_mm", "iso"}
 """Figures of gripper and coupling that no printed part rests on."""
 _TEXTS = "grippers/texts.toml"
 
