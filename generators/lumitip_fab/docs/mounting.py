@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from lumitip_fab.design import Design, Holder
+from lumitip_fab.design.frames import gripper_to_tool
 from lumitip_fab.docs.cable_ways import cable_ways
 from lumitip_fab.docs.flange import plugs
 from lumitip_fab.docs.steps import numbered
@@ -86,6 +87,9 @@ def _finger_work(design: Design) -> Iterator[str]:
         yield _text("measured_fingers", thickness_mm=design.stack.thickness_mm)
     yield _text("force_first", rated_n=design.strength.rated_force_n)
     yield _text("screwed_on", bolts=len(mount.bolt_u_mm), mount=mount)
+    frames = design.stack, mount, design.closing, design.system
+    face = "the robot's flange" if design.flanges else "the gripper's own face"
+    yield _text("tool", tool_mm=float(gripper_to_tool(*frames)[2, 3]), face=face)
     yield _text("moved")
 
 
