@@ -239,6 +239,16 @@ def test_copper_follows_what_is_written_of_it(file: Any) -> None:
         assert config.value("board.via_mm") - config.value("board.via_drill_mm") >= 0.2 - 1e-9
 
 
+@pytest.mark.parametrize(("panel", "gap_mm"), [("none", 0.25), ("rails", 0.5)])
+def test_a_narrow_receiver_keeps_room_for_the_mouse_bites_of_a_panel(
+    file: Any, panel: str, gap_mm: float
+) -> None:
+    text = f'[grid]\ncolumns = [9, 8]\n[board]\npanel = "{panel}"\n'
+    design = derive(load(file(text)))
+    assert design.rules.track_mm < 0.2
+    assert design.rules.edge_gap_mm == gap_mm
+
+
 def test_a_module_reads_as_many_cells_as_its_wires_allow(file: Any) -> None:
     text = '[controller]\nboard = "nrf52840_module"\n[grid]\ncolumns = [8, 8, 8, 8, 8, 8]\n'
     design = derive(load(file(text)))

@@ -188,7 +188,7 @@ def _channel(config: Input) -> Iterator[Proposal]:
         yield "board.channel_mm", WIDE_CHANNEL_MM, reason
     elif muxes > 4 or fine:
         yield "board.channel_mm", ROOMY_CHANNEL_MM, reason
-    if fine:
+    if fine and p.board.panel == "none":  # mouse bites reach into a board of a panel
         yield "board.edge_gap_mm", LEAST_EDGE_GAP_MM, reason
 
 

@@ -19,8 +19,8 @@ from lumitip_fab.derive.boards.breakout_input import collide
 from lumitip_fab.derive.boards.protection import HOLE_GAP_MM, apart_mm
 from lumitip_fab.derive.boards.supply_input import is_regulated
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.derive.wiring.cabling import COPPER_OHM_MM2_PER_M
 from lumitip_fab.derive.wiring.ratings import SUPPLY_TOLERANCE
+from lumitip_fab.derive.wiring.section import COPPER_OHM_MM2_PER_M
 from lumitip_fab.design import Component, Point
 from lumitip_fab.design.components import chip
 from lumitip_fab.design.feed import Feed

@@ -20,6 +20,7 @@ from lumitip_fab.derive.mount.fasteners import bolt_length_mm
 from lumitip_fab.derive.mount.rules import refuse_block, refuse_nose, refuse_place
 from lumitip_fab.derive.mount.tie_lugs import finger_lugs
 from lumitip_fab.derive.mount.unsure import unsure_figures
+from lumitip_fab.derive.wiring.section import emitter_section_mm2
 from lumitip_fab.design import Closing, Letter, Mould, Mount, Outline, Stack
 from lumitip_fab.design.cabling import THREAD_MM, outer_mm
 
@@ -40,7 +41,7 @@ def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Diagnostic
     front = max(before + value, nose.front_w_mm if nose else 0.0)
     most = gripper.bolt_w_mm - gripper.counterbore_mm / 2 - p.printer.min_wall_mm
     if not is_flex(p):
-        tied = outer_mm(p.wiring.section_mm2) + THREAD_MM
+        tied = outer_mm(emitter_section_mm2(config)) + THREAD_MM
         front = max(front, min(p.stack.pcb_mm + tied, most))
     faults.unless(
         front <= most, "no_wall_before_bolt", field=field, value=value, most=most - before

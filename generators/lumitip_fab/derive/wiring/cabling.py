@@ -9,15 +9,12 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.connectors import SWITCH
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.loops import BEND_RATIO, Way, loop_of, with_room
+from lumitip_fab.derive.wiring.section import MOST_A_PER_MM2, MOST_DROP, section_mm2
 from lumitip_fab.design import AuxiliaryBoard, Component, Electrical, Finger, Mount, Outline, Wiring
 from lumitip_fab.design.cabling import STRANDED, Cable, Cabling, Terminal, Wire
 
-MOST_A_PER_MM2 = 3.0  # in a bundle; a common figure for thin wires without cooling
-MOST_DROP = 0.02  # of the LEDs' supply, both ways
 DRILL_ROOM_MM = 0.1
 STEP_MM = 10.0  # lengths are multiples of it
-COPPER_OHM_MM2_PER_M = 0.0178
-SOLD_MM2 = (0.05, 0.08, 0.14, 0.25, 0.34, 0.5, 0.75, 1.0, 1.5, 2.5, 4.0)
 _FIXED = {"GND": "BK", "3V3": "OG", "5V": "PK"}
 _SUPPLY = "RD"  # of the LEDs, whatever its voltage
 _PLAIN = ("BN", "YE", "GN", "BU", "VT", "GY", "WH", "TQ")
@@ -242,15 +239,9 @@ def _cable(
 def _thick_enough(config: Input, cable: Cable, cables: list[Cable]) -> Cable:
     """The cable with the configured section or, where that is too thin, the smallest sold one that
     carries its current to the supply."""
-    supply_v, asked = config.parameters.supply.voltage_v, config.parameters.wiring.section_mm2
-    amps = max(_currents_ma(cable)) / 1000
     feeding = [c for c in cables if c.start.board != "receiver" and any(_currents_ma(c))]
     way_mm = sum(c.length_mm for c in feeding)
-    for_drop = 2 * way_mm / 1000 * amps * COPPER_OHM_MM2_PER_M / (MOST_DROP * supply_v)
-    least = max(amps / MOST_A_PER_MM2, for_drop)
-    if asked >= least:
-        return cable
-    return replace(cable, section_mm2=next((s for s in SOLD_MM2 if s >= least), least))
+    return replace(cable, section_mm2=section_mm2(config, max(_currents_ma(cable)), way_mm))
 
 
 def _currents_ma(cable: Cable) -> tuple[float, ...]:
