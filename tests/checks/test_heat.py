@@ -36,13 +36,13 @@ def test_nothing_fails_as_it_is_written(copied: Path) -> None:
     [
         (
             NOTE,
-            "Nothing is heated from here on.",
+            "No part of a finger is heated from here on.",
             "Warm it to 90 °C (hot air or an oven).",
             {"notes", "orders"},
         ),
         (
             NOTE,
-            "Nothing is heated from here on.",
+            "No part of a finger is heated from here on.",
             "Warm the finger until the film is limp.",
             {"orders"},
         ),

@@ -56,7 +56,7 @@ def test_a_measured_figure_leaves_the_list(written: Written, inputs: dict[str, I
     mine = gripper.origin["bolt"].model_copy(update={"confidence": "measured"})
     own = gripper.model_copy(update={"origin": {**gripper.origin, "bolt": mine}})
     assert "bolt" not in own.unsure
-    assert set(own.unsure) == {"force_n", "seat_back_w_mm"}
+    assert set(own.unsure) == {"force_n", "seat_back_w_mm", "supply_a"}
     sure = replace(written(), mount=replace(written().mount, unsure=()), flanges=())
     assert "grippers.toml" not in measuring(sure)
 
