@@ -217,7 +217,7 @@ def _wrong_units(manual: Manual, design: Design) -> list[str]:
 
 def _soldering_h(manual: Manual) -> set[float]:
     """Hours to solder all parts by hand: a minute and a half for each, rounded up."""
-    counted = re.search(r"for all (\d+) parts by hand", " ".join(manual.blocks))
+    counted = re.search(r"for all (\d+) parts of all boards by hand", " ".join(manual.blocks))
     return {math.ceil(int(counted[1]) * 1.5 / 60)} if counted else set()
 
 

@@ -199,35 +199,6 @@ def test_a_smaller_change_does_not_mend(file: Any) -> None:
         resolve(load(file(f"[stack]\nsilicone_mm = {value - 0.05:g}\n")))
 
 
-AUTOMATIC = '[emitter]\ndrive = "auto"\n[supply]\nvoltage_v = {}.0\n'
-
-
-@pytest.mark.parametrize("volts", [5, 6, 9])
-def test_resistors_that_stand_for_current_sources_hold_the_current(file: Any, volts: int) -> None:
-    """With the fewest strings it would be 3.9 to 41.6 mA from 6 and 9 V, 8.6 to 32.4 mA from 5."""
-    design = derive(load(file(AUTOMATIC.format(volts))))
-    strings = design.electrical.strings
-    assert strings.regulation is None
-    left_v = volts - max(map(len, design.wiring.strings)) * strings.forward_v
-    assert left_v >= 0.3 * volts
-    assert min(strings.low_ma) > 0.6 * strings.target_ma
-    assert max(strings.high_ma) < 1.4 * strings.target_ma
-    (reason,) = [c.reason for c in design.choices if c.field == "emitter.string_leds"]
-    assert f"% of {volts} V is left to each resistor" in reason
-
-
-def test_written_resistors_are_as_few_as_the_supply_allows(file: Any) -> None:
-    design = derive(load(file("[supply]\nvoltage_v = 9.0\n")))
-    assert max(map(len, design.wiring.strings)) == 6
-
-
-@pytest.mark.parametrize("columns", ["[5, 4, 5, 4, 5, 4, 5]", "[9, 8, 9, 8, 9, 8]"])
-def test_a_fuse_carries_the_worst_case_of_all_strings(file: Any, columns: str) -> None:
-    config = resolve(load(file(f"{AUTOMATIC.format(5)}[grid]\ncolumns = {columns}\n"))).config
-    high_ma = sum(derive(config).electrical.strings.high_ma)
-    assert 1000 * 0.75 * config.parts.flange.fuse.rated_a > high_ma
-
-
 def test_copper_follows_what_is_written_of_it(file: Any) -> None:
     for text, field, least in (
         ("track_mm = 0.8", "board.supply_track_mm", 0.8),

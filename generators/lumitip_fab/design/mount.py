@@ -85,9 +85,8 @@ class Mount:
     lugs: tuple[TieLug, ...]
     """For ties round the cable, beside the block; none where it leaves no room."""
     force_n: float
-    """Greatest force of the gripper; 0 where it is not known."""
     supply_a: float
-    """Greatest current of the gripper; 0 where it is not known."""
+    """Greatest force and current of the gripper; 0 if unknown."""
     unsure: tuple[Unsure, ...]
     """Figures of the gripper's entry to measure."""
 

@@ -45,8 +45,11 @@ def soldering(design: Design, files: Files) -> str:
     shown += [face for board in auxiliary for face in faces(board) if face not in tried]
     behind = any(part.side == "back" for part in design.emitter.parts)
     reflowed = _reflowed(design)
-    count = sum(len(finger.parts) for finger in design.fingers)
-    count += sum(len(board.components) for board in auxiliary)
+    count = sum(
+        int(row["quantity"])
+        for path in files.like("boards/*/*.kicad_pcb")
+        for row in files.facts(path).get("parts", ())
+    )
     return _text(
         "boards_soldered",
         count=count,

@@ -49,7 +49,7 @@ def _board_tools(design: Design) -> str:
     tools = ["hot air to solder with", "a programmer for SWD"] * module
     tools += ["pliers"] * bool(design.panels)
     tools += ["a small vice"] * bool(design.flanges) + ["a needle"] * bool(design.interfaces)
-    tools += ["a cutting mat, a plastic card"] * bool(design.mould.inserts)
+    tools += ["a plastic card"] * bool(design.mould.inserts)
     return "".join(f", {tool}" for tool in tools)
 
 

@@ -174,6 +174,7 @@ _SLIT_MM = 0.01  # half the width of a slit in a silhouette that is closed
 
 
 TALLEST_MM = 110.0
+"""Of a picture of the manual, beside the words of a step."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,7 @@ from lumitip_fab.derive.boards.feed import leaves_enough
 from lumitip_fab.derive.boards.module import MOST_WIRES
 from lumitip_fab.derive.boards.packages import LEAST_RING_MM
 from lumitip_fab.derive.boards.plug_in import least_inrush_ohm
+from lumitip_fab.derive.boards.supply_input import FUSE_SHARE, fed_ma
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import bending_lines, lane_mm
 from lumitip_fab.derive.finger.stack import is_flex, least_standoff_mm, mask_mm
@@ -23,6 +24,7 @@ from lumitip_fab.derive.wiring.ratings import (
     sold_from,
     sold_ohm,
 )
+from lumitip_fab.derive.wiring.section import most_lit_ma
 from lumitip_fab.errors import InputError
 
 Proposal = tuple[str, Value, str]
@@ -238,6 +240,15 @@ def _interface(config: Input) -> Iterator[Proposal]:
         )
 
 
+def _fuse(config: Input) -> Iterator[Proposal]:
+    """The smallest fuse for LEDs and controller at the worst case, or the largest that there is."""
+    drawn_ma = most_lit_ma(config) + fed_ma(config)
+    by_rating = sorted(config.catalogue.fuses.items(), key=lambda item: item[1].rated_a)
+    fitting = (name for name, fuse in by_rating if 1000 * FUSE_SHARE * fuse.rated_a >= drawn_ma)
+    reason = f"LEDs and controller draw up to {drawn_ma:.0f} mA"
+    yield "flange.fuse", next(fitting, by_rating[-1][0]), reason
+
+
 def _flange(config: Input) -> Iterator[Proposal]:
     """Parts of the flange's board that follow from supply and current."""
     p, parts = config.parameters, config.catalogue
@@ -252,6 +263,7 @@ def _flange(config: Input) -> Iterator[Proposal]:
     if fitting:
         name = min(fitting, key=lambda each: parts.tvs_diodes[each].standoff_v)
         yield "flange.tvs", name, f"the lowest stand-off voltage for {p.supply.voltage_v:g} V"
+    yield from _fuse(config)
     ohm = max(
         float(automatic_fields()["flange.inrush_ohm"].start), sold_from(least_inrush_ohm(config))
     )

@@ -145,15 +145,18 @@ def drawn_by_controller_ma(config: Input) -> float:
     return config.parts.controller.board.draws_ma / EFFICIENCY
 
 
+def fed_ma(config: Input) -> float:
+    """Current of the controller through the fuse; 0 where another supply feeds it."""
+    if input_board(config) == "breakout" and is_regulated(config):
+        return 0.0
+    output_v = config.parts.flange.regulator.output_v
+    return drawn_by_controller_ma(config) * output_v / config.parameters.supply.voltage_v
+
+
 def _refuse_fuse(config: Input, strings: Strings, faults: Diagnostics) -> None:
     """Refuse a fuse too small for controller and LEDs, their strings at the worst case; a
     breakout's fuse carries the controller where both have one supply."""
-    p = config.parameters
-    output_v = config.parts.flange.regulator.output_v
-    fed_ma = drawn_by_controller_ma(config) * output_v / p.supply.voltage_v
-    if input_board(config) == "breakout" and is_regulated(config):
-        fed_ma = 0.0
-    drawn_ma = sum(string.high_ma for string in strings.strings) + fed_ma
+    drawn_ma = sum(string.high_ma for string in strings.strings) + fed_ma(config)
     allowed_ma = 1000 * FUSE_SHARE * config.parts.flange.fuse.rated_a
     faults.unless(
         drawn_ma <= allowed_ma,

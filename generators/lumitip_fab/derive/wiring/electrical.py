@@ -11,6 +11,7 @@ from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.ambient import derive_ambient, scan_us
 from lumitip_fab.derive.wiring.protection import derive_protection
 from lumitip_fab.derive.wiring.ratings import RESISTOR_TOLERANCE, SUPPLY_TOLERANCE
+from lumitip_fab.derive.wiring.section import REACH_MM
 from lumitip_fab.derive.wiring.sources import COLDEST_C, FORWARD_V_PER_K, HOTTEST_C, regulation
 from lumitip_fab.derive.wiring.strings import Strings as DerivedStrings
 from lumitip_fab.derive.wiring.strings import string_of
@@ -135,14 +136,13 @@ def _channel(config: Input, protection: Protection | None) -> Channel:
 WIRE_PF_PER_M = 100.0
 """Of a wire between grounded ones: 96 pF/m in 3M's cable 3560 (TS-0672-B, PVC, AWG 26)."""
 LEAST_WIRE_MM = 300.0  # that a channel is made for: users cut their wires longer
-ENDS_MM = 60.0  # of a wire on its finger and in its bends, at most
 
 
 def _wire_mm(config: Input) -> float:
     """Length of a signal's wire, or more: the boards that it ends on are not known yet."""
     p = config.parameters.wiring
     travel_mm = config.parts.coupling.gripper.stroke_mm / 2
-    return max(LEAST_WIRE_MM, p.controller_mm + p.slack_mm + travel_mm + ENDS_MM)
+    return max(LEAST_WIRE_MM, p.controller_mm + p.slack_mm + travel_mm + REACH_MM)
 
 
 def _refuse_slow(

@@ -30,12 +30,17 @@ def section_mm2(config: Input, current_ma: float, way_mm: float) -> float:
 
 def emitter_section_mm2(config: Input) -> float:
     """Section of the wires at the emitter, or more: their exact lengths are not known yet."""
-    p, wiring = config.parameters, config.parameters.wiring
-    longest = min(longest_string(config), p.emitter.string_leds)
-    if longest < 1:
-        return wiring.section_mm2
-    by_string = lengths(sum(p.grid.columns), longest)
-    lit_ma = sum(string_of(config, leds, p.emitter.current_ma).high_ma for leds in by_string)
+    wiring = config.parameters.wiring
     own_mm = REACH_MM + config.parts.coupling.gripper.stroke_mm / 2
     way_mm = wiring.supply_mm + wiring.controller_mm + 2 * wiring.slack_mm + own_mm
-    return section_mm2(config, lit_ma, way_mm)
+    return section_mm2(config, most_lit_ma(config), way_mm)
+
+
+def most_lit_ma(config: Input) -> float:
+    """Current of all strings at the worst case; 0 where the supply feeds none."""
+    p = config.parameters
+    longest = min(longest_string(config), p.emitter.string_leds)
+    if longest < 1:
+        return 0.0
+    by_string = lengths(sum(p.grid.columns), longest)
+    return sum(string_of(config, leds, p.emitter.current_ma).high_ma for leds in by_string)
