@@ -117,9 +117,7 @@ def test_several_changes_are_said_to_work_together(file: Any) -> None:
 def test_more_supply_is_asked_for_than_the_least_current_needs_and_no_more(plan: Any) -> None:
     """32 LEDs from 12 V are four strings. At 19.2 mA a bare detector takes 300 uA, and the largest
     pull-up, 150 kohm, gives (3.3 - 0.2) V / 150 kohm: each string needs 1.3 mA for full light."""
-    found = plan(
-        "[supply]\nvoltage_v = 12.0\nmax_ma = 5.0\n[receiver]\npull_up_ohm = \"auto\"\n"
-    )
+    found = plan('[supply]\nvoltage_v = 12.0\nmax_ma = 5.0\n[receiver]\npull_up_ohm = "auto"\n')
     (remedy,) = found.steps[0].remedies
     assert remedy.field == "supply.max_ma"
     needed_ma = 4 * 19.2 * (3.3 - 0.2) / 150e3 / 300e-6
