@@ -115,8 +115,8 @@ class Search:
         starts = bank.closest(frame.light, frame.scale, _STARTS)
         poses = [self._full_pose(kind, pose, frame, one.drifts) for pose in starts]
         kept = self._kept([*fits(shape, np.array(poses), frame, _GLANCE), one])
-        if one.converged and kept[-1] is one and not bank.elsewhere(one, kept):
-            return one
+        if not bank.elsewhere(one, kept):
+            return fit(shape, kept[int(bounded(kept).argmin())].pose, frame)
         looked = fits(shape, np.array(poses_of(kept)), frame, _LOOK)
         losses = bounded(looked)
         first = looked[int(losses.argmin())]
