@@ -9,7 +9,8 @@ import pytest
 
 from damages import edit, excerpt
 from lumitip_fab.design.encoding import read_design
-from manual_figures import measure, read_pdf
+from manual_figures import measure
+from manual_reader import read_pdf
 
 pytestmark = pytest.mark.slow
 

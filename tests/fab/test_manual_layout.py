@@ -11,7 +11,7 @@ import pikepdf
 import pytest
 
 from lumitip_fab.design.encoding import read_design
-from manual_figures import read_pdf
+from manual_reader import read_pdf
 
 pytestmark = pytest.mark.slow
 

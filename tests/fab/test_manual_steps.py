@@ -12,7 +12,7 @@ import pytest
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.docs.casting import casting_steps
 from lumitip_fab.docs.mounting import mounting_steps
-from manual_figures import read_pdf
+from manual_reader import read_pdf
 
 pytestmark = pytest.mark.slow
 

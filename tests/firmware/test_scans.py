@@ -23,8 +23,8 @@ def test_several_conversions_and_ambient_light(
     run: Callable[..., Any],
     sketch: Callable[[str], Path],
 ) -> None:
-    """The share of ambient light is given back, up to the converter's greatest reading; a cell
-    without it keeps its code."""
+    """Codes have the range that ambient light took, up to the converter's greatest reading; a cell
+    without ambient light keeps its code."""
     done = run(str(host_program("scans", "published", *defines)))
     assert done.returncode == 0, done.stderr
     mean, lit, unlit, bright, counts, _ = done.stdout.splitlines()

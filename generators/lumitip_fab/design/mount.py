@@ -47,9 +47,8 @@ class Mount:
     """
 
     gripper: str
-    """Its name in `parts/grippers.toml`."""
     title: str
-    """Title for documents."""
+    """Name of the gripper in `parts/grippers.toml`, and title for documents."""
     origin_y_mm: float
     """y of the mount frame's origin in the sensor frame; its z is the rim's."""
     tilt_deg: float

@@ -45,11 +45,7 @@ def soldering(design: Design, files: Files) -> str:
     shown += [face for board in auxiliary for face in faces(board) if face not in tried]
     behind = any(part.side == "back" for part in design.emitter.parts)
     reflowed = _reflowed(design)
-    count = sum(
-        int(row["quantity"])
-        for path in files.like("boards/*/*.kicad_pcb")
-        for row in files.facts(path).get("parts", ())
-    )
+    count = sum(int(row["quantity"]) for row in _rows(files))
     return _text(
         "boards_soldered",
         count=count,
@@ -119,14 +115,15 @@ def _thick(pcb_mm: float) -> str:
     return f"{text}\n"
 
 
+def _rows(files: Files) -> Iterator[dict[str, str]]:
+    """The rows of all boards' bills of materials."""
+    for path in files.like("boards/*/*.kicad_pcb"):
+        yield from files.facts(path).get("parts", ())
+
+
 def _unplaced(files: Files) -> str:
     """Parts that the PCB fab which mounts parts does not know by a number; empty without any."""
-    rows = [
-        row
-        for path in files.like("boards/*/*.kicad_pcb")
-        for row in files.facts(path).get("parts", ())
-        if not row["lcsc"]
-    ]
+    rows = [row for row in _rows(files) if not row["lcsc"]]
     parts = dict.fromkeys(
         f"{row['manufacturer']} {row['part']}"
         + f" ({row['value']})" * (row["value"] != row["part"])

@@ -8,12 +8,12 @@ from dataclasses import replace
 from lumitip_fab.config.automatic import Value, automatic_fields
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.wiring.ratings import sold_from
-from lumitip_fab.derive.wiring.sources import String, longest_with_resistor
+from lumitip_fab.derive.wiring.sources import longest_with_resistor
 from lumitip_fab.derive.wiring.strings import (
     lengths,
     longest_string,
-    string_of,
     string_problems,
+    strings_of,
 )
 
 CURRENT_STEP = 0.95  # from one current that is tried to the next
@@ -38,7 +38,7 @@ def choose_strings(config: Input, steady: bool = False) -> Iterator[tuple[str, V
     refused, steady = "", steady or "emitter.drive" in config.automatic
     for driven in _drives(config):
         for tried, longest in _candidates(driven, steady):
-            problem = next(string_problems(tried, _strings(tried, longest)), None)
+            problem = next(string_problems(tried, strings_of(tried, longest)), None)
             if problem is None:
                 yield from _drive_proposals(tried, refused)
                 yield from _proposals(tried, longest)
@@ -96,18 +96,12 @@ def _drive_proposals(config: Input, refused: str) -> Iterator[tuple[str, Value, 
 
 
 def _broken(candidate: tuple[Input, int]) -> int:
-    return len(list(string_problems(candidate[0], _strings(*candidate))))
-
-
-def _strings(config: Input, longest: int) -> tuple[String, ...]:
-    cells, current = sum(config.parameters.grid.columns), config.parameters.emitter.current_ma
-    by_length = {n: string_of(config, n, current) for n in set(lengths(cells, longest))}
-    return tuple(by_length[n] for n in lengths(cells, longest))
+    return len(list(string_problems(candidate[0], strings_of(*candidate))))
 
 
 def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
     p = config.parameters
-    strings = _strings(config, longest)
+    strings = strings_of(config, longest)
     package = config.parts.emitter.resistor
     load, volts = max(s.high_load_w for s in strings), p.supply.voltage_v
     full = float(automatic_fields()["emitter.current_ma"].start)

@@ -146,7 +146,8 @@ def drawn_by_controller_ma(config: Input) -> float:
 
 
 def fed_ma(config: Input) -> float:
-    """Current of the controller through the fuse; 0 where another supply feeds it."""
+    """Current of the controller through the fuse; a breakout's fuse carries it only where both have
+    one supply."""
     if input_board(config) == "breakout" and is_regulated(config):
         return 0.0
     output_v = config.parts.flange.regulator.output_v
@@ -154,8 +155,7 @@ def fed_ma(config: Input) -> float:
 
 
 def _refuse_fuse(config: Input, strings: Strings, faults: Diagnostics) -> None:
-    """Refuse a fuse too small for controller and LEDs, their strings at the worst case; a
-    breakout's fuse carries the controller where both have one supply."""
+    """Refuse a fuse too small for controller and LEDs, their strings at the worst case."""
     drawn_ma = sum(string.high_ma for string in strings.strings) + fed_ma(config)
     allowed_ma = 1000 * FUSE_SHARE * config.parts.flange.fuse.rated_a
     faults.unless(

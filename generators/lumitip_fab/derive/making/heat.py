@@ -34,7 +34,7 @@ _OTHER = {
 }
 """Other parts that can be chosen beside a silicone or a current."""
 UNLOADED = ("primer", "tape")
-"""What has done its work once the finger is in use."""
+"""Parts that bear nothing any more once the finger is in use."""
 
 
 def derive_heat(

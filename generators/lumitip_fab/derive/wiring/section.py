@@ -1,7 +1,7 @@
 """Section of the wires that feed the LEDs: for their current, and for the voltage that it loses."""
 
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.wiring.strings import lengths, longest_string, string_of
+from lumitip_fab.derive.wiring.strings import longest_string, strings_of
 
 MOST_A_PER_MM2 = 3.0  # in a bundle; a common figure for thin wires without cooling
 MOST_DROP = 0.02  # of the LEDs' supply, both ways
@@ -38,9 +38,5 @@ def emitter_section_mm2(config: Input) -> float:
 
 def most_lit_ma(config: Input) -> float:
     """Current of all strings at the worst case; 0 where the supply feeds none."""
-    p = config.parameters
-    longest = min(longest_string(config), p.emitter.string_leds)
-    if longest < 1:
-        return 0.0
-    by_string = lengths(sum(p.grid.columns), longest)
-    return sum(string_of(config, leds, p.emitter.current_ma).high_ma for leds in by_string)
+    longest = min(longest_string(config), config.parameters.emitter.string_leds)
+    return sum(string.high_ma for string in strings_of(config, longest)) if longest else 0.0

@@ -63,6 +63,13 @@ def string_of(config: Input, leds: int, current_ma: float) -> String:
     return made(config, leds, current_ma)
 
 
+def strings_of(config: Input, longest: int) -> tuple[String, ...]:
+    """All strings of a finger with at most so many LEDs in each."""
+    cells, current = sum(config.parameters.grid.columns), config.parameters.emitter.current_ma
+    by_length = {n: string_of(config, n, current) for n in set(lengths(cells, longest))}
+    return tuple(by_length[n] for n in lengths(cells, longest))
+
+
 def longest_string(config: Input) -> int:
     """Most LEDs in a string that the supply feeds; 0 if not even one."""
     if config.parameters.emitter.drive == "source":
