@@ -8,6 +8,7 @@ import pytest
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design.electrical import Channel
+from lumitip_fab.errors import InputError
 
 Write = Callable[[str], Path]
 EACH = '[receiver]\nload = "each"\npull_up_ohm = "auto"\n'
@@ -43,3 +44,31 @@ def test_slack_and_stroke_count(channel: Callable[[str], Channel]) -> None:
     assert slack.wire_pf - less.wire_pf == pytest.approx(0.1 * PF_PER_M)
     wide = '[coupling]\ngripper = "robotiq_2f140"\n'
     assert channel(far.format(40.0) + wide).wire_pf > less.wire_pf
+
+
+INPUTS, MOST_MS = 16, 5.0
+
+
+@pytest.mark.parametrize("current_ma", ['"auto"', "3.0"])
+def test_an_automatic_pull_up_is_fast_enough_over_any_wire(file: Write, current_ma: str) -> None:
+    far = (
+        '[receiver]\nload = "each"\npull_up_ohm = "auto"\nmultiplexer = "74HC4067PW"\n'
+        f"[emitter]\ncurrent_ma = {current_ma}\n[wiring]\ncontroller_mm = 2000.0\n"
+    )
+    design = derive(load(file(far)))
+    wait_us = design.electrical.channel.wait_us
+    assert wait_us and 0.8 * MOST_MS < INPUTS * wait_us / 1000 <= MOST_MS
+    (reason,) = [c.reason for c in design.choices if c.field == "receiver.pull_up_ohm"]
+    assert "settles too slowly" in reason
+    assert f"{100 * design.electrical.channel.light_share:.0f} % of its range" in reason
+
+
+def test_the_greatest_pull_up_that_is_named_works(file: Write) -> None:
+    own = '[receiver]\nload = "each"\npull_up_ohm = {}\n'
+    with pytest.raises(
+        InputError, match=r"waits 6\.44 ms .* At most 56000 is fast enough"
+    ) as found:
+        derive(load(file(own.format(75000.0))))
+    assert [problem.field for problem in found.value.problems] == ["receiver.pull_up_ohm"]
+    wait_us = derive(load(file(own.format(56000.0)))).electrical.channel.wait_us
+    assert wait_us and 8 * wait_us / 1000 <= MOST_MS

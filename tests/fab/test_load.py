@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from lumitip_fab.config.load import Input, load
 from lumitip_fab.config.parts import NAMED, OPTIONAL
 from lumitip_fab.derive import derive
+from lumitip_fab.docs.spec_circuit import channel_rows
 from lumitip_fab.errors import InputError, Problem
 
 DESIGN = Path(__file__).parents[2] / "design"
@@ -222,3 +223,14 @@ def test_an_input_knows_the_part_behind_every_name() -> None:
     parts = given.parts_by_field()
     assert parts["receiver.multiplexer"] == given.catalogue.multiplexers["74HC4067PW"]
     assert parts["coupling.gripper"] == given.catalogue.grippers["robotiq_2f85"]
+
+
+@pytest.mark.parametrize(
+    ("preset", "share"), [("published", "7.3 times its range"), ("mux16", "97 % of its range")]
+)
+def test_the_spec_says_how_much_of_its_range_a_bare_cell_uses(preset: str, share: str) -> None:
+    """300 µA at 20 mA, through 75 or 10 kΩ from 3.1 V, at 19.2 mA."""
+    design = derive(load(DESIGN / "presets" / f"{preset}.toml"))
+    (row,) = [row for row in channel_rows(design) if row.quantity == "light of a bare cell"]
+    assert row.computed == share
+    assert ("cut off" in row.reason) == (preset == "published")

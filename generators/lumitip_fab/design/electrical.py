@@ -74,6 +74,9 @@ class Channel:
     supply_v: float
     """Supply of the detectors, which is also the reference of the ADC."""
     light_current_ua: float
+    light_share: float
+    """Light of a bare cell at the LEDs' current, as a share of what saturates a pull-up; above 1 it
+    is cut off."""
     dark_current_na: float
     saturation_v: float
     on_resistance_ohm: float

@@ -9,6 +9,8 @@ from lumitip_fab.docs.row import Row, rows_of
 
 CONVERSION_US = 30
 """As in `settings.h` of the firmware: one conversion."""
+CUT_OFF_SHARE = 1.1
+"""Light of a bare cell, of its range: up to here the catalogue's figure cannot tell."""
 
 
 def electrical_rows(design: Design) -> Iterator[Row]:
@@ -68,8 +70,9 @@ def _of_sources(held: Regulation) -> dict[str, object]:
 
 
 def channel_rows(design: Design) -> Iterator[Row]:
-    """Signals of a channel, the time it needs, and the receiver's bulk capacitor."""
+    """Light and signals of a channel, the time it needs, and the receiver's bulk capacitor."""
     channel, bulk = design.electrical.channel, design.electrical.bulk
+    yield from _light(design)
     yield from rows_of(
         "channel",
         channel=channel,
@@ -83,6 +86,16 @@ def channel_rows(design: Design) -> Iterator[Row]:
     if bulk is not None:
         name, left_percent = design.packages.bulk_name, 100 * bulk.left
         yield from rows_of("bulk", bulk=bulk, name=name, left_percent=left_percent)
+
+
+def _light(design: Design) -> Iterator[Row]:
+    """How much of its range a bare cell uses, or that it is cut off."""
+    share, target_ma = design.electrical.channel.light_share, design.electrical.strings.target_ma
+    if share <= CUT_OFF_SHARE:
+        return rows_of("within", percent=100 * share, target_ma=target_ma)
+    fitting = design.wiring.pull_up_ohm / share
+    covered = 100 * (1 - 1 / share)
+    return rows_of("beyond", share=share, target_ma=target_ma, covered=covered, fitting=fitting)
 
 
 def _phototransistor(design: Design) -> Iterator[Row]:

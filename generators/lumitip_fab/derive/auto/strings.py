@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from lumitip_fab.config.automatic import Value, automatic_fields
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.wiring.ratings import sold_from
+from lumitip_fab.derive.wiring.ratings import e24, sold_to
+from lumitip_fab.derive.wiring.settling import light_share, most_pull_up_ohm
 from lumitip_fab.derive.wiring.sources import longest_with_resistor
 from lumitip_fab.derive.wiring.strings import (
     lengths,
@@ -18,10 +19,9 @@ from lumitip_fab.derive.wiring.strings import (
 
 CURRENT_STEP = 0.95  # from one current that is tried to the next
 FULL_SHARE = 0.95
-"""Of the current that saturates a pull-up, what a bare cell takes at least by the catalogue. More
-would hide what dims a cell by less than the rest."""
+"""Of the current that saturates a pull-up, what a bare cell takes by the catalogue, within half a
+step of the E24 series. More would hide what dims a cell by less than the rest."""
 CUT_OFF_SHARE = 1.1  # of its range, that the light of a bare cell asks for
-MOST_PULL_UP_OHM = 150e3  # a channel settles that much slower
 STEADY_SHARE = 0.3
 """Share of the supply across a resistor that a choice of this program leaves, if the ratings allow:
 with half of it the current changes twice as much with supply and temperature."""
@@ -123,19 +123,27 @@ def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
         p.emitter.resistor,
         f"takes up to {1000 * load:.0f} mW over all tolerances, rated {1000 * package.power_w:.0f}",
     )
-    start = float(automatic_fields()["receiver.pull_up_ohm"].start)
-    factor = _least_ma(config, start) / p.emitter.current_ma
-    ohm = start if factor <= 1 else sold_from(min(start * factor, MOST_PULL_UP_OHM))
-    share = FULL_SHARE * p.emitter.current_ma / _least_ma(config, ohm)
-    reason = f"a bare cell uses nearly all of its range at {p.emitter.current_ma:g} mA"
-    if share > CUT_OFF_SHARE:
-        reason = f"a bare cell is cut off: its light is {share:.1f} times its range"
-    elif share < FULL_SHARE - 1e-9:
-        reason = (
-            f"with more than {MOST_PULL_UP_OHM:g} a channel settles too slowly; at "
-            f"{p.emitter.current_ma:g} mA a bare cell uses a part of its range"
-        )
+    ohm, reason = _pull_up(config)
     yield "receiver.pull_up_ohm", ohm, reason
+
+
+def _pull_up(config: Input) -> tuple[float, str]:
+    """Pull-up with which a bare cell uses `FULL_SHARE` of its range, or the one nearest to it that
+    is fast enough; and the reason."""
+    current_ma = config.parameters.emitter.current_ma
+    start = float(automatic_fields()["receiver.pull_up_ohm"].start)
+    wanted = max(1.0, FULL_SHARE / light_share(config, current_ma, start)) * start
+    most = most_pull_up_ohm(config)
+    ohm = min(e24(wanted), sold_to(most))
+    share = light_share(config, current_ma, ohm)
+    if share > CUT_OFF_SHARE:
+        return ohm, f"a bare cell is cut off: its light is {share:.1f} times its range"
+    if wanted > most:
+        return ohm, (
+            f"with more than {ohm:g} a channel settles too slowly; at {current_ma:g} mA a bare "
+            f"cell uses {100 * share:.0f} % of its range"
+        )
+    return ohm, f"a bare cell uses nearly all of its range at {current_ma:g} mA"
 
 
 def _currents(config: Input) -> Iterator[float]:
@@ -145,8 +153,7 @@ def _currents(config: Input) -> Iterator[float]:
         yield p.emitter.current_ma
         return
     full = float(automatic_fields()["emitter.current_ma"].start)
-    least = least_current_ma(config)
-    current = full
+    least, current = min(least_current_ma(config), full), full
     while current >= least:
         yield round(current, 1)
         current *= CURRENT_STEP
@@ -169,7 +176,8 @@ def least_current_ma(config: Input) -> float:
     """LED current with which a bare cell uses nearly all of its range."""
     automatic = "receiver.pull_up_ohm" in config.automatic
     return _least_ma(
-        config, MOST_PULL_UP_OHM if automatic else config.parameters.receiver.pull_up_ohm
+        config,
+        most_pull_up_ohm(config) if automatic else config.parameters.receiver.pull_up_ohm,
     )
 
 
@@ -181,16 +189,8 @@ def lowest_ma(config: Input) -> float:
 
 
 def _least_ma(config: Input, ohm: float) -> float:
-    """LED current with which a bare cell takes `FULL_SHARE` of what saturates a pull-up.
-
-    The catalogue's `light_current_ua` is for the published current.
-    """
-    p, parts = config.parameters, config.catalogue
-    detector = parts.photodetectors[p.receiver.photodetector]
-    supply_v = parts.controllers[p.controller.board].supply_v
-    saturated_ua = 1e6 * (supply_v - detector.saturation_v) / ohm
-    full = float(automatic_fields()["emitter.current_ma"].start)
-    return full * FULL_SHARE * saturated_ua / detector.light_current_ua
+    """LED current with which a bare cell takes `FULL_SHARE` of what saturates a pull-up."""
+    return FULL_SHARE / light_share(config, 1.0, ohm)
 
 
 def _resistors(config: Input) -> Iterator[str]:

@@ -26,10 +26,14 @@ def e96(ohm: float) -> float:
     return _nearest(ohm, np.array([*_E96, 10.0]))
 
 
+def e24(ohm: float) -> float:
+    """The nearest value of the E24 series, which each distributor has in each package."""
+    return _nearest(ohm, np.array([*E24, 10.0]))
+
+
 def sold_ohm(ohm: float) -> float:
     """The nearest value of the E24 and E96 series, in both of which 1 % resistors are sold."""
-    e24 = np.array([*E24, 10.0])
-    steps = np.array([e96(ohm), _nearest(ohm, e24)])
+    steps = np.array([e96(ohm), e24(ohm)])
     return float(steps[np.abs(np.log(steps / ohm)).argmin()])
 
 
@@ -38,6 +42,14 @@ def sold_from(least_ohm: float) -> float:
     ohm = sold_ohm(least_ohm)
     while ohm < least_ohm:
         ohm = sold_ohm(ohm * 1.02)  # E96 steps by 2.4 %
+    return ohm
+
+
+def sold_to(most_ohm: float) -> float:
+    """The greatest value of the E24 series that is not above a limit."""
+    ohm = e24(most_ohm)
+    while ohm > most_ohm:
+        ohm = e24(ohm / 1.1)  # E24 steps by 10 %
     return ohm
 
 
