@@ -69,6 +69,14 @@ def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
         c.name for c in design.auxiliary_boards if any(d.side == "back" for d in c.components)
     }
     wanted |= {f"boards/{name}/{name}_back.png" for name in behind}
+    wanted |= {f"boards/{name}/{name}_assembly_front.svg" for name in boards}
+    mounted = {f.name: f.parts for f in design.fingers}
+    mounted |= {board.name: board.components for board in design.auxiliary_boards}
+    wanted |= {
+        f"boards/{name}/{name}_assembly_back.svg"
+        for name, parts in mounted.items()
+        if any(part.part and part.side == "back" for part in parts)
+    }
     shown = dict(manual.pictures)
     wrong = sorted(wanted ^ shown.keys())
     for name in sorted(wanted & shown.keys()):

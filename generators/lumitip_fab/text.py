@@ -4,8 +4,10 @@ and texts that stand in files beside the code."""
 import re
 import tomllib
 import unicodedata
+from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
+from string import digits
 from typing import Any
 
 from anyascii import anyascii
@@ -50,6 +52,21 @@ def as_written(text: str) -> str:
 def listed(names: list[str]) -> str:
     """Names as a sentence has them, such as `"a, b and c"`."""
     return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+
+
+def runs(refs: Iterable[str]) -> str:
+    """References as a sentence has them, three or more that follow one another as `"R1 to R4"`."""
+    found: list[list[str]] = []
+    for ref in refs:
+        letters = ref.rstrip(digits)
+        before = f"{letters}{int(ref[len(letters) :] or 0) - 1}"
+        if found and found[-1][-1] == before:
+            found[-1].append(ref)
+        else:
+            found.append([ref])
+    return listed(
+        [name for run in found for name in ([f"{run[0]} to {run[-1]}"] if len(run) > 2 else run)]
+    )
 
 
 def resistor_code(ohm: float) -> str:

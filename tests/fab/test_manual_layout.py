@@ -53,16 +53,19 @@ def test_each_step_has_a_page(built: Callable[[str], Path], preset: str) -> None
     text = (built(preset) / HTML).read_text(encoding="utf-8")
     found = re.findall(r"<h2>(\d+\. .*?)</h2>(.*?)(?=<h2>|</body>)", text, re.DOTALL)
     assert len(found) > 20
+    appendix = re.search(r"<h2>(Parts of the \w+ board)</h2>", text)
+    assert appendix is not None
+    parts = next(n for n, s in enumerate(sheets) if s.startswith(appendix[1].replace(" ", "")))
     heads = [unescape(title).replace(" ", "") for title, _ in found]
     begins = [next(n for n, sheet in enumerate(sheets) if head in sheet) for head in heads]
     lists = {n for n, (_, step) in enumerate(found[:2]) if step.count("<tr>") > LIST_ROWS}
     assert 0 in lists
-    ends = {len(sheets) - 1} | {begins[n + 1] - 1 for n in lists}
+    ends = {parts - 1, len(sheets) - 1} | {begins[n + 1] - 1 for n in lists}
     for n, (begin, after) in enumerate(pairwise(begins)):
         if n not in lists:
             assert after == begin or sheets[after].startswith(heads[n + 1]), heads[n]
             assert after - begin <= 1, heads[n]
-    assert begins[-1] == len(sheets) - 1
+    assert begins[-1] == parts - 1
     with pikepdf.open(built(preset) / PDF) as document:
         margin, high = 51.0, float(document.pages[0].mediabox[3])
         for number, page in enumerate(document.pages):

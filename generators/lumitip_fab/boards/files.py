@@ -1,6 +1,7 @@
 """Every file of a board, from its parts in their places to the zips that it is ordered with."""
 
 from lumitip_fab.boards.courtyards import with_courtyards
+from lumitip_fab.boards.fab.assembly_drawing import assembly_drawings
 from lumitip_fab.boards.fab.notes import assembly_note, fabrication_note, stop_note
 from lumitip_fab.boards.fab.order import assembled, bom_rows, by_hand, layers_of, order_files
 from lumitip_fab.boards.fab.picture import picture_files
@@ -53,6 +54,7 @@ def model_files(design: Design, model: BoardModel) -> tuple[Artefact, ...]:
         **project_files(model, board.thickness_mm),
         **schematic_files(board, design),
         **picture_files(model, board.finish.mask),
+        **assembly_drawings(board),
     }
     for fab in design.fabs:
         small = is_too_small(design, board.name, fab)

@@ -23,7 +23,15 @@ from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline.manifest import sha256_of
 
-READS = ("manual/*", "*/*.md", "assembly/*.svg", "boards/*/*.png", "mask/*.svg", "wiring/*.svg")
+READS = (
+    "manual/*",
+    "*/*.md",
+    "assembly/*.svg",
+    "boards/*/*.png",
+    "boards/*/*_assembly_*.svg",
+    "mask/*.svg",
+    "wiring/*.svg",
+)
 
 _HTML, _PDF = "manual/manual.html", "manual/manual.pdf"
 _CHAPTER = re.compile(r"(\d+)\. ")

@@ -47,6 +47,7 @@ MODULES = (
     "libraries",
     "netlists",
     "pictures",
+    "assembly_drawing",
     "orders",
     "panels",
     "printing",

@@ -23,6 +23,7 @@ from lumitip_fab.docs.measuring import measuring
 from lumitip_fab.docs.mounting import mounting_steps
 from lumitip_fab.docs.orders import amount, money
 from lumitip_fab.docs.page import html_page
+from lumitip_fab.docs.placed import where_parts_go
 from lumitip_fab.docs.protection import boards_of_later
 from lumitip_fab.docs.sheet import pdf_sheets
 from lumitip_fab.docs.wiring import ends_of_fingers, wiring_steps
@@ -61,6 +62,7 @@ def manual_text(design: Design, files: Files) -> str:
         *mounting_steps(design),
         _run(design),
         _kept(design),
+        *where_parts_go(design, files),
     )
     numbers = count(1)
     joined = _joined(chapter.strip() for chapter in chapters) + "\n"

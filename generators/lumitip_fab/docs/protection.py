@@ -2,11 +2,10 @@
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from string import ascii_letters, digits
 
 from lumitip_fab.design import AuxiliaryBoard, Component, Design
 from lumitip_fab.docs.wiring import ends_of_fingers
-from lumitip_fab.text import listed, passage
+from lumitip_fab.text import passage, runs
 
 ESD, TVS, FUSE, MOSFET = "esd diode", "tvs diode", "fuse", "transistor"
 SCHOTTKY = "schottky diode"
@@ -36,11 +35,13 @@ def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
             for part in board.components
             if part.kind == "resistor" and {net for _, net in part.nets} & lines
         ]
-        limited = _text("protected_series", resistors=_references(held)) if held else ""
+        limited = (
+            _text("protected_series", resistors=runs(part.ref for part in held)) if held else ""
+        )
         yield _text(
             "protected_esd",
             board=board.name,
-            diodes=_references(diodes),
+            diodes=runs(part.ref for part in diodes),
             limited=limited,
             before="the wires are on" if board.module else "wires and controller are on",
             missing=_text("protected_module" if board.module else "protected_plain"),
@@ -74,16 +75,6 @@ def _fed(board: AuxiliaryBoard, design: Design, diodes: Sequence[Component]) -> 
             for net, kind in ((before, "wires"), (behind, "socket"))
         }
         yield _text("protected_feed", feed=feed, part=part, cable=ends[before], socket=ends[behind])
-
-
-def _references(parts: Sequence[Component]) -> str:
-    """References of parts in the order of the board; a run of numbers as `"Z1 to Z10"`."""
-    refs = [part.ref for part in parts]
-    first = int(refs[0].strip(ascii_letters))
-    run = [refs[0].rstrip(digits) + str(first + i) for i in range(len(refs))]
-    if refs == run and len(refs) > 2:
-        return f"{refs[0]} to {refs[-1]}"
-    return listed(refs)
 
 
 def _text(name: str, /, **values: object) -> str:

@@ -219,10 +219,10 @@ def _picture(path: str, files: Files, width: float, high: float, layout: _Layout
     if path.endswith(".svg"):
         data = files.read(path)
         drawing = svg2rlg(io.BytesIO(data))
-        if drawing.width > _WIDE * WIDTH:
+        least = _letter(drawing)
+        if high * least < _READABLE_PT * drawing.height or drawing.width > _WIDE * WIDTH:
             high = max(high, _WIDE_HIGH)
         scale = min(1.0, width / drawing.width, high / drawing.height)
-        least = _letter(drawing)
         if not _TRUE_SIZE.search(data):
             scale = min(scale, max(layout.drawing * scale, _READABLE_PT / least))
         drawing.scale(scale, scale)

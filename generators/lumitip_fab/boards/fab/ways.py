@@ -19,6 +19,10 @@ _LIES = {
     **dict.fromkeys(_ALIKE, "alike"),
 }
 """Name of the line by the kind of part: every kind but diodes, which have their own lines."""
+MARKED_END = (*AT_CELLS, *_DIODES)
+"""Kinds whose end at pad 1 is marked."""
+MARKED_FIRST = tuple(kind for kind, lies in _LIES.items() if lies in ("notch", "dot", "pad"))
+"""Kinds that have a mark at lead 1."""
 
 
 def lying(board: Placement) -> Iterator[str]:
