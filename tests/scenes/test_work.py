@@ -226,7 +226,7 @@ def test_without_lugs_the_wires_go_straight_on(outputs: Path) -> None:
     tied, free = (
         cable_view(design.receiver, seen, colours, mount, design.stack) for mount in mounts
     )
-    assert ["Lug" in tied, "Lug" in free] == [True, False]
+    assert ["Cable lug" in tied, "Cable lug" in free] == [True, False]
     assert tied.count('stroke-width=".8"') == free.count('stroke-width=".8"') >= 18
 
 

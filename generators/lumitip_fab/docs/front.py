@@ -39,6 +39,10 @@ def _words(design: Design) -> Iterator[str]:
     """Rows of the words that could be taken for one another."""
     yield _text("word_bends" if design.interfaces else "word_rigid")
     yield _text("word_block", mount=design.mount)
+    if design.mount.lugs or any(holder.lugs for holder in design.holders):
+        yield _text("word_lug")
+    if any(holder.arm_lugs for holder in design.holders):
+        yield _text("word_arm_lug")
     for flange in design.flanges:
         yield _text("word_flange", flange=flange)
 

@@ -77,7 +77,7 @@ def cable_view(
     _lay(sheet, eye, colours, open_ways)
     labels = [(("Wires", "through the notch, under the block"), open_ways[0][0])]
     if mount.lugs:
-        labels.append((("Lug", "tie the cable to it"), open_ways[0][_STEPS]))
+        labels.append((("Cable lug", "tie the cable to it"), open_ways[0][_STEPS]))
     placed = [(words, _page(eye, at)) for words, at in labels]
     sheet.leaders_beside(placed, _CABLE_WORDS * _WORDS_MM)
     return sheet.svg(_ANGLES)
@@ -149,7 +149,7 @@ def _wires(
     finger: Finger, mount: Mount, stack: Stack, count: int
 ) -> tuple[list[Points], list[Points]]:
     """Each wire's way in the sensor frame: from its pad to the side of the block, between board and
-    block, and from there past the lug along the gripper; without a lug straight on."""
+    block, and from there past the cable lug along the gripper; without a lug straight on."""
     to_sensor = frames.mount_to_sensor(mount, stack)
     low_y, high_y = finger.notch.y_min_mm, finger.notch.y_max_mm
     hidden, open_ways = [], []

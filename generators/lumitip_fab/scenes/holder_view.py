@@ -38,16 +38,32 @@ def holder_view(holder: Holder, printed: Mesh) -> str:
         for loop in loops:
             sheet.wire(loop, [TIE])
     lower = min(loops, key=lambda points: float(points[:, 1].min()))
-    labels = [
+    upper = max(loops, key=lambda points: float(points[:, 1].max()))
+    cables = [
+        (("Cable lug", f"for the cable at {lug.name}"), eye.seen(_outside(lug))[0, :2])
+        for lug in holder.lugs
+    ]
+    middle = float(rings[0][:, 0].mean())
+    right = [
         (("Gripper", "dashed: its edges"), rings[1][int(rings[1][:, 0].argmax())]),
         (("Loop", "two ties, pulled tight"), lower[lower[:, 0].argmax()]),
+        *(label for label in cables if label[1][0] > middle),
     ]
-    sheet.leaders_beside(labels, _WORDS_MM)
-    upper = max(loops, key=lambda points: float(points[:, 1].max()))
-    left = float(sheet.low[0]) - _LABEL_MM
-    sheet.leaders([(("Lug", "a tie goes through"), upper[upper[:, 0].argmin()])], left, "end")
-    sheet.cover(left - _WORDS_MM, float(labels[0][1][1]))
+    sheet.leaders_beside(right, _WORDS_MM)
+    left = [
+        (("Arm lug", "for a tie of the loop"), upper[upper[:, 0].argmin()]),
+        *(label for label in cables if label[1][0] <= middle),
+    ]
+    edge = float(sheet.low[0]) - _LABEL_MM
+    low = sheet.leaders(left, edge, "end")
+    sheet.cover(edge - _WORDS_MM, low)
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
+
+
+def _outside(lug: TieLug) -> Points:
+    """Middle of a lug's outer face on the bed, `(1, 3)`."""
+    z = (lug.opening.y_min_mm + lug.opening.y_max_mm) / 2
+    return np.array([[lug.side * (lug.face_mm + lug.out_mm), sum(lug.along_mm) / 2, z]])
 
 
 def _loops(holder: Holder) -> list[Points]:
