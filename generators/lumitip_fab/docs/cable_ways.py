@@ -34,7 +34,9 @@ def _held(design: Design, end: Terminal) -> Iterator[str]:
         yield "tie round the gripper"
     for holder in design.holders:
         named = [lug.name for lug in holder.lugs if holder.auxiliary == end.board]
-        yield from (f"tie at the holder's cable lug {name}" for name in named if name == end.connector)
+        yield from (
+            f"tie at the holder's cable lug {name}" for name in named if name == end.connector
+        )
     if end.board == "supply":
         yield "its terminals"
     elif (end.board, end.connector) in _headers(design):
