@@ -28,10 +28,11 @@ def written(inputs: dict[str, Input], vary: Any) -> Written:
     return lambda changes=None, preset="published": derive(vary(inputs[preset], changes or {}))
 
 
-def rows(design: Design) -> dict[str, tuple[str, str, str]]:
-    """Value, source and way to measure of each figure."""
-    found = re.findall(r"^\| (.*?) \| (.*?) \| (.*?) \| (.*?) \|$", measuring(design), re.MULTILINE)
-    return {name.strip("`"): (value, source, how) for name, value, source, how in found[1:]}
+def rows(design: Design) -> dict[str, tuple[str, ...]]:
+    """Value, source, way to measure and file of each figure."""
+    row = r"^" + 5 * r"\| (.*?) " + r"\|$"
+    found = re.findall(row, measuring(design), re.MULTILINE)
+    return {name.strip("`"): tuple(cells) for name, *cells in found[1:]}
 
 
 def test_figures_without_a_sure_source_are_measured(written: Written) -> None:
@@ -44,8 +45,17 @@ def test_figures_without_a_sure_source_are_measured(written: Written) -> None:
     assert shown["holder.body_mm"][:2] == ("75 mm", "inferred")
     assert shown["contacts_depth_mm"][:2] == ("6.4 mm", "inferred")
     assert not {"bolt_w_mm", "recess_mm", "stroke_mm"} & shown.keys(), "measured, or not printed"
+    files = {name: cells[-1].strip("`") for name, cells in shown.items()}
+    assert files == {
+        "depth of the gripper's thread": "no file",
+        "bolt": "grippers.toml",
+        "seat_back_w_mm": "grippers.toml",
+        "holder.body_mm": "the parameter file",
+        "contacts_depth_mm": "couplings.toml",
+    }
     text = " ".join(measuring(design).split())
-    assert '`[robotiq_2f85]` of `grippers.toml` or `["Robotiq I/O"]`' in text
+    assert "in `grippers.toml` below `[robotiq_2f85]`" in text
+    assert 'in `couplings.toml` below `["Robotiq I/O"]`' in text
 
 
 def test_a_measured_figure_leaves_the_list(written: Written, inputs: dict[str, Input]) -> None:

@@ -117,7 +117,7 @@ def finger_board(design: Design, finger: Finger) -> AuxiliaryBoard:
     Raises:
         BuildError: if a part has no room, with the numbers.
     """
-    board, rules = design.board, design.rules
+    board, rules = design.board, rules_of(design, finger.name)
     parts = {part.ref: with_outline(part, rules) for part in circuit(design, finger)}
     kinds = {part.kind for part in parts.values()}
     named = {part.name: part for part in finger.parts}

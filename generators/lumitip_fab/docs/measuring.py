@@ -8,21 +8,21 @@ from lumitip_fab.text import as_written, passage, table_of
 
 _GRIPPERS, _OTHERS = "grippers/texts.toml", "docs/measuring.toml"
 _BODY = "holder.body_mm"
+_GRIPPER_FILE, _COUPLING_FILE = "grippers.toml", "couplings.toml"
 
 
 def measuring(design: Design) -> str:
     """The step: each figure that is not sure, with what the design uses, and how to measure it."""
     mount = design.mount
-    places = [f"`[{mount.gripper}]` of `grippers.toml`"] * bool(mount.to_measure)
+    places = [f"in `{_GRIPPER_FILE}` below `[{mount.gripper}]`"] * bool(mount.to_measure)
     for flange in design.flanges:
-        place = f'`["{flange.coupling}"]` of `couplings.toml`'
+        place = f'in `{_COUPLING_FILE}` below `["{flange.coupling}"]`'
         places += [place] * bool(_of_coupling(flange))
     return _text(
         "measured_first",
         rows="\n".join(_rows(design)),
         title=as_written(mount.title),
-        written=_text("measured_in", places=" or ".join(places)) if places else "",
-        body=_text("measured_body") if _body(design) else "",
+        written=_text("measured_in", places=", ".join(places)) + " " if places else "",
         gripper_cable="".join(gripper_cable(design) for _ in design.flanges),
     )
 
@@ -31,18 +31,15 @@ def _rows(design: Design) -> Iterator[str]:
     """The finger bolts, then the figures of gripper, body and coupling."""
     mount, texts = design.mount, table_of(_OTHERS)
     bolt = f"{mount.bolt} x {mount.bolt_length_mm:g}, {mount.into_gripper_mm:.1f} mm into it"
-    yield _row("depth of the gripper's thread", bolt, "unknown", texts["depth"])
+    yield _row("depth of the gripper's thread", bolt, "unknown", texts["depth"], "no file")
     how = table_of(_GRIPPERS)["figures"]
     for figure in mount.to_measure:
-        yield _row(
-            f"`{figure.name}`", figure.value, figure.confidence, how[figure.name] + _others(figure)
-        )
+        yield _figure(figure, how[figure.name] + _others(figure), f"`{_GRIPPER_FILE}`")
     for figure in _body(design):
-        yield _row(f"`{figure.name}`", figure.value, figure.confidence, texts["body"])
+        yield _figure(figure, texts["body"], "the parameter file")
     for flange in design.flanges:
         for figure in _of_coupling(flange):
-            how_to = texts["coupling"][figure.name]
-            yield _row(f"`{figure.name}`", figure.value, figure.confidence, how_to)
+            yield _figure(figure, texts["coupling"][figure.name], f"`{_COUPLING_FILE}`")
 
 
 def _others(figure: Unsure) -> str:
@@ -65,8 +62,12 @@ def _body(design: Design) -> list[Unsure]:
     ]
 
 
-def _row(figure: str, value: str, confidence: str, how: str) -> str:
-    return f"| {figure} | {value} | {confidence} | {how} |"
+def _figure(figure: Unsure, how: str, file: str) -> str:
+    return _row(f"`{figure.name}`", figure.value, figure.confidence, how, file)
+
+
+def _row(figure: str, value: str, confidence: str, how: str, file: str) -> str:
+    return f"| {figure} | {value} | {confidence} | {how} | {file} |"
 
 
 def _text(name: str, /, **values: object) -> str:

@@ -105,18 +105,19 @@ def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
     package = config.parts.emitter.resistor
     load, volts = max(s.high_load_w for s in strings), p.supply.voltage_v
     full = float(automatic_fields()["emitter.current_ma"].start)
+    named = "1 string" if len(strings) == 1 else f"{len(strings)} strings"
     reason = "current of the published sensor"
     if p.emitter.current_ma < full:
         reason = (
-            f"less than {full:g} mA: {len(strings)} strings from {volts:g} V keep to "
+            f"less than {full:g} mA: with {named} from {volts:g} V, it keeps to "
             f"supply.max_ma, emitter.max_heat_w = {p.emitter.max_heat_w:g} and the ratings"
         )
     yield "emitter.current_ma", p.emitter.current_ma, reason
     leds = max(lengths(sum(p.grid.columns), longest))
-    reason = f"{len(strings)} strings: as few as {volts:g} V and the ratings allow"
+    reason = f"{named}: as few as {volts:g} V and the ratings allow"
     if p.emitter.drive == "resistor" and leds < longest_with_resistor(config):
         left = 100 * (1 - leds * config.parts.emitter.led.forward_voltage_v / volts)
-        reason = f"{len(strings)} strings: {left:.0f} % of {volts:g} V is left to each resistor"
+        reason = f"{named}: {left:.0f} % of {volts:g} V is left to each resistor"
     yield "emitter.string_leds", leds, reason
     yield (
         "emitter.resistor",
