@@ -128,6 +128,7 @@ def _wrong_units(manual: Manual, design: Design) -> list[str]:
     if not design.packages.photodetector.mark_is_known:
         volts.add(LIT_V)
     heat = {figure for s in design.heat for figure in (s.temperature_c, s.limit_c)}
+    heat.add(25.0)  # of the room that the heat in use is estimated for
     hours = {design.mould.cure_h, design.mould.glue_hard_h, *_soldering_h(manual)}
     allowed = {"h": hours, "°C": heat, "V": volts}
     matches = re.findall(r"(?<![\w.])(\d+(?:\.\d+)?) (h|°C|V)\b", " ".join(manual.blocks))

@@ -13,11 +13,12 @@ from lumitip_fab.design.cabling import Cable, outer_mm
 from lumitip_fab.design.encoding import read_design
 
 LIST = "wiring/cables.csv"
+BOARDS = ("emitter", "receiver", "breakout")
 
 
 @pytest.fixture
 def cables(outputs: Path, tmp_path: Path) -> Path:
-    return excerpt(outputs, tmp_path, LIST, "boards/emitter", "boards/receiver")
+    return excerpt(outputs, tmp_path, LIST, *(f"boards/{name}" for name in BOARDS))
 
 
 def changed(folder: Path, cable: str, column: int, value: str) -> None:
@@ -40,7 +41,7 @@ def test_an_undamaged_list_passes(cables: Path) -> None:
 
 
 def test_wires_too_thick_to_bend(cables: Path) -> None:
-    changed(cables, "W1", SECTION, "6")
+    changed(cables, "W1", SECTION, "10")
     assert failing(cables, "bending") == {"radius"}
 
 

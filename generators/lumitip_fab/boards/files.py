@@ -2,6 +2,7 @@
 
 from lumitip_fab.boards.courtyards import with_courtyards
 from lumitip_fab.boards.fab.assembly_drawing import assembly_drawings
+from lumitip_fab.boards.fab.groups import groups
 from lumitip_fab.boards.fab.notes import assembly_note, fabrication_note, stop_note
 from lumitip_fab.boards.fab.order import assembled, bom_rows, by_hand, layers_of, order_files
 from lumitip_fab.boards.fab.picture import picture_files
@@ -67,6 +68,7 @@ def model_files(design: Design, model: BoardModel) -> tuple[Artefact, ...]:
     facts = {
         "parts": list(bom_rows(assembled(board))),
         "by_hand": list(bom_rows(by_hand(board))),
+        "groups": groups(board, design.wiring.adc_pins),
     }
     return tuple(
         Artefact(f"boards/{board.name}/{path}", data, to_frame(design.stack), frame, facts)

@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import minimize
 
-from lumitip_fab.checks.cables import Row, read_list
+from lumitip_fab.checks.cables import read_list
 from lumitip_fab.checks.readers.kicad_board import read_board
 from lumitip_fab.checks.readers.solids import Vectors
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.wiring import reach_mm
+from lumitip_fab.checks.wiring import reach_mm, run_mm
 from lumitip_fab.design import Design
 from lumitip_fab.design.cabling import outer_mm
 from lumitip_fab.errors import OutputError
@@ -34,7 +34,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """The smallest radius of each cable that moves with a finger."""
     try:
         rows = read_list(outputs / _LIST)
-        boards = {f: read_board(outputs / f"boards/{f}/{f}.kicad_pcb") for f in _FINGERS}
+        ends = [b.name for b in design.auxiliary_boards if b.name == "breakout"]
+        boards = {b: read_board(outputs / f"boards/{b}/{b}.kicad_pcb") for b in (*_FINGERS, *ends)}
     except OutputError as error:
         yield unreadable("bending.readable", _LIST, str(error))
         return
@@ -44,7 +45,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     for name, row in cables.items():
         shortest = min(each.length_mm for each in rows if each.cable == name)
         free_mm = shortest - reach_mm(boards[row.start[0]], design)
-        radius = _radius_mm(row, free_mm, design)
+        radius = _radius_mm(run_mm(row, boards.get("breakout"), design), free_mm, design)
         stated = 0 < row.section_mm2 < math.inf
         wide = outer_mm(row.section_mm2) if stated else math.inf
         least = MARGIN * design.cabling.bend_ratio * wide
@@ -58,10 +59,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         )
 
 
-def _radius_mm(row: Row, free_mm: float, design: Design) -> float:
+def _radius_mm(run_mm: float, free_mm: float, design: Design) -> float:
     """The smallest radius at any place; NaN if the cable does not reach, or no rest is found."""
-    cabling = design.cabling
-    run_mm = cabling.supply_mm if row.end[0] == "supply" else cabling.controller_mm
     travel_mm = design.mount.stroke_mm / 2
     if not math.hypot(run_mm, travel_mm) < free_mm < math.inf:
         return math.nan

@@ -208,13 +208,27 @@ def _lengths(rows: tuple[Row, ...], boards: dict[str, KicadBoard], design: Desig
         if row.start[0] in ("emitter", "receiver"):
             way += cabling.travel_mm + reach_mm(boards[row.start[0]], design)
             way += sum(c.added_mm for c in cabling.cables if c.name == row.cable)
-            way += cabling.supply_mm if row.end[0] == "supply" else cabling.controller_mm
+            way += run_mm(row, boards.get("breakout"), design)
         else:
             way += cabling.supply_mm
         over.append(row.length_mm - way)
     worst = max(over, key=lambda mm: abs(mm - cabling.step_mm / 2), default=math.nan)
     note = "longer than reach, travel, way, slack and what bends need"
     return Measurement("wiring.lengths", _LIST, worst, 0, cabling.step_mm, "mm", note)
+
+
+def run_mm(row: Row, breakout: KicadBoard | None, design: Design) -> float:
+    """Way of a finger's wire along the gripper: the breakout's wire pads for the receiver, J5, face
+    the fingers."""
+    if row.end[0] == "supply":
+        return design.cabling.supply_mm
+    if breakout is None or row.end[0] != "breakout":
+        return design.cabling.controller_mm
+    near, end = (
+        float(np.mean([t.at[1] for p in breakout.parts if p.ref == ref for t in p.terminals]))
+        for ref in ("J5", row.end[1].partition(".")[0])
+    )
+    return design.cabling.controller_mm + abs(near - end)
 
 
 def reach_mm(board: KicadBoard, design: Design) -> float:

@@ -156,6 +156,8 @@ class Cabling:
     """Way to the supply: from the controller's breakout, or from the fingers where it has none."""
     controller_mm: float
     """From the fingers' gripper end to the controller."""
+    beyond_mm: float
+    """So much farther the emitter's cable goes: its pads are at the breakout's other end."""
     slack_mm: float
     step_mm: float
     """Lengths are multiples of it."""

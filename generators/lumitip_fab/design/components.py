@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from lumitip_fab.catalogue.controllers import OPEN, Leaded, Strip
-from lumitip_fab.catalogue.electronics import Chip, Resistor, ResistorArray
+from lumitip_fab.catalogue.electronics import Capacitor, Chip, Resistor, ResistorArray
 from lumitip_fab.catalogue.record import Ordered
 from lumitip_fab.design import footprints
 from lumitip_fab.design.pcb import Component, Footprint
@@ -72,7 +72,8 @@ def chip(
 ) -> Component:
     """A part with two terminals, each with its net."""
     shape = footprints.chip(kind, entry)
-    return mounted(ref, kind, value, entry, shape, numbered(nets), at, angle_deg)
+    made = mounted(ref, kind, value, entry, shape, numbered(nets), at, angle_deg)
+    return replace(made, rating=f"{entry.rated_v:g} V") if isinstance(entry, Capacitor) else made
 
 
 def resistor(

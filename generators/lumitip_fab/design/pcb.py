@@ -123,6 +123,8 @@ class Component:
     mark_confidence: str = ""
     """Confidence in the cathode of an LED to look at, which its mark is taken for; empty of other
     parts."""
+    rating: str = ""
+    """Rating that a part of the same value may not have, such as `"35 V"`; empty of most parts."""
 
     @property
     def data_page(self) -> str:

@@ -30,7 +30,6 @@ def ordering(design: Design, files: Files) -> str:
         panels=_panels(design),
         polarity=polarity,
         unplaced=_unplaced(files),
-        elsewhere=_text("shown_later") if boards_of_later(design) else "",
         stopped=_text("stopped") * bool(polarity),
     )
 
@@ -110,6 +109,7 @@ def _thick(pcb_mm: float) -> str:
         low_mm=pcb_mm - off_mm,
         high_mm=pcb_mm + off_mm,
         most_mm=pcb_mm + PROUD_MM,
+        deeper_mm=off_mm,
         film_mm=GLUE_FILM_MM,
     )
     return f"{text}\n"

@@ -1,9 +1,10 @@
 """The casting of the skin: amounts, and the steps from the board in its backing to the finger out
 of its mould; for the note beside each mould and for the manual."""
 
+import math
 from collections.abc import Mapping
 
-from lumitip_fab.design import Design, Finger, Mould
+from lumitip_fab.design import Design, Finger, Mould, Mount
 from lumitip_fab.docs.steps import WorkStep, numbered
 from lumitip_fab.pipeline.artefact import Artefact, Files
 from lumitip_fab.text import passage
@@ -162,7 +163,13 @@ def _held(design: Design, fingers: tuple[Finger, ...]) -> str:
     name = "pocket" if sunk else "plate"
     groove_mm = design.board.pocket_clearance_mm + design.board.roof_mm
     glue = {"glue": design.strength.glue, "glue_hard_h": mould.glue_hard_h, "groove_mm": groove_mm}
+    glue |= {"rest_mm": rest_mm(design.mount)}
     return _text(name, taped=taped, tape=tape, **glue)
+
+
+def rest_mm(mount: Mount) -> int:
+    """Height of what a finger lies on, face up: more than its block stands out."""
+    return 10 * math.ceil(mount.block_back_w_mm / 10)
 
 
 def open_back(design: Design, finger: Finger) -> bool:

@@ -147,15 +147,11 @@ def gripper_cable(design: Design) -> str:
     supply = _from_robot(design, pads) if pads else ""
     own = [part.ref for part in headers if {net for _, net in part.nets} - {*board.supplies}]
     lines = _text("lines", lines=listed(own)) if own else ""
-    drawn = _drawn(design, len(pads)) if pads and design.mount.supply_a else ""
+    mount, most_a = design.mount, len(pads) * SLOT_MM2 * design.cabling.most_a_per_mm2
+    if pads and mount.supply_a > most_a:
+        return _text("makers_cable", mount=mount, most_a=most_a)
+    drawn = _text("drawn", mount=mount, most_a=most_a) if pads and mount.supply_a else ""
     return _text("gripper_cable", supply=supply or _text("behind_fuse"), lines=lines, drawn=drawn)
-
-
-def _drawn(design: Design, pads: int) -> str:
-    """What the gripper takes, against what the contacts of its supply carry."""
-    most_a = pads * SLOT_MM2 * design.cabling.most_a_per_mm2
-    choice = _text("drawn_more" if design.mount.supply_a > most_a else "drawn_less")
-    return _text("drawn", mount=design.mount, most_a=most_a, choice=choice)
 
 
 def _from_robot(design: Design, pads: list[str]) -> str:

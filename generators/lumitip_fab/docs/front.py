@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from lumitip_fab.design import Design, HeatStep, Mask, Mould
+from lumitip_fab.docs.casting import rest_mm
 from lumitip_fab.text import as_written, passage
 
 WARM_UP_MIN = 5
@@ -27,6 +28,7 @@ def front(design: Design) -> str:
         warm_up_min=WARM_UP_MIN,
         words="\n".join(_words(design)),
         keys=_keys(design),
+        rest_mm=rest_mm(design.mount),
         nozzle_mm=design.slicing.nozzle_mm,
         board_tools=_board_tools(design),
         mask_tools=_text(f"tools_{design.mask.route}", soften_c=design.mask.soften_c),

@@ -31,7 +31,7 @@ def _rows(design: Design) -> Iterator[str]:
     """The finger bolts, then the figures of gripper, body and coupling."""
     mount, texts = design.mount, table_of(_OTHERS)
     bolt = f"{mount.bolt} x {mount.bolt_length_mm:g}, {mount.into_gripper_mm:.1f} mm into it"
-    yield _row("depth of the gripper's thread", bolt, "unknown", texts["depth"], "no file")
+    yield _row("depth of the gripper's thread", bolt, texts["depth"], "no file")
     how = table_of(_GRIPPERS)["figures"]
     for figure in mount.to_measure:
         yield _figure(figure, how[figure.name] + _others(figure), f"`{_GRIPPER_FILE}`")
@@ -63,11 +63,11 @@ def _body(design: Design) -> list[Unsure]:
 
 
 def _figure(figure: Unsure, how: str, file: str) -> str:
-    return _row(f"`{figure.name}`", figure.value, figure.confidence, how, file)
+    return _row(f"`{figure.name}`", f"{figure.value}, {figure.confidence}", how, file)
 
 
-def _row(figure: str, value: str, confidence: str, how: str, file: str) -> str:
-    return f"| {figure} | {value} | {confidence} | {how} | {file} |"
+def _row(figure: str, value: str, how: str, file: str) -> str:
+    return f"| {figure} | {value} | {how} | {file} |"
 
 
 def _text(name: str, /, **values: object) -> str:

@@ -63,6 +63,7 @@ def _gripper_work(design: Design) -> Iterator[str]:
             holder=holder,
             screws=len(holder.holes),
             robot=listed(_to_robot(design, holder)),
+            fingers=_to_fingers(design),
             loop_mm=holder.tie_loop_mm,
         )
     if not design.holders and any(board.name == "breakout" for board in design.auxiliary_boards):
@@ -117,6 +118,16 @@ def _to_robot(design: Design, holder: Holder) -> list[str]:
         if near.board == holder.auxiliary and far.board not in fingers
     }
     return sorted(ends)
+
+
+def _to_fingers(design: Design) -> str:
+    """What lies at the board's other edge, and the cable that goes past the board."""
+    if not design.cabling.beyond_mm:
+        return ""
+    emitter = design.cabling.cables[0]
+    receiver = next(c for c in design.cabling.cables if c.start.board == "receiver")
+    ends = (cable.end.connector for cable in (receiver, emitter))
+    return _text("fingers_edge", near=next(ends), far=next(ends), cable=emitter.name)
 
 
 def _greatest(design: Design) -> str:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from itertools import chain
+from typing import Any
 
 from lumitip_fab.design import Design
 from lumitip_fab.pipeline.artefact import Files
@@ -25,6 +26,7 @@ def where_parts_go(design: Design, files: Files) -> Iterator[str]:
                 if files.like(path)
             ),
             rows="\n".join(_lines(facts["parts"], facts["by_hand"])),
+            groups=_grouped(facts["groups"]),
         )
         intro = ""
 
@@ -34,9 +36,15 @@ def _lines(placed: Iterable[dict[str, str]], by_hand: Iterable[dict[str, str]]) 
     rows = chain(((row, "") for row in placed), ((row, " (by hand)") for row in by_hand))
     for row, how in rows:
         product = " ".join(filter(None, (row["manufacturer"], row["part"])))
-        yield f"| {runs(row['refs'].split(','))} | {as_written(row['value'] + how)} | " + (
-            f"{as_written(product)} |"
-        )
+        value = ", ".join(filter(None, (row["value"], row["rating"]))) + how
+        refs = runs(row["refs"].split(","))
+        yield f"| {refs} | {as_written(value)} | {as_written(product)} |"
+
+
+def _grouped(groups: list[dict[str, Any]]) -> str:
+    """The table of what belongs together; empty without any."""
+    rows = "\n".join(f"| {group['name']} | {runs(group['refs'])} |" for group in groups)
+    return "\n\n" + _text("placed_groups", rows=rows).strip() if rows else ""
 
 
 def _text(name: str, /, **values: object) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 from lumitip_fab.design import AuxiliaryBoard, Component, Design
 from lumitip_fab.docs.wiring import ends_of_fingers
-from lumitip_fab.text import passage, runs
+from lumitip_fab.text import listed, passage, runs
 
 ESD, TVS, FUSE, MOSFET = "esd diode", "tvs diode", "fuse", "transistor"
 SCHOTTKY = "schottky diode"
@@ -43,6 +43,7 @@ def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
             board=board.name,
             diodes=runs(part.ref for part in diodes),
             limited=limited,
+            pads=listed(_pads(board, diodes)),
             before="the wires are on" if board.module else "wires and controller are on",
             missing=_text("protected_module" if board.module else "protected_plain"),
         )
@@ -60,6 +61,12 @@ def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
             "protected_tvs", board=board.name, part=part, melts=melts, where=where, reversed=ends
         )
     yield from _fed(board, design, kinds[SCHOTTKY])
+
+
+def _pads(board: AuxiliaryBoard, diodes: Sequence[Component]) -> list[str]:
+    """Pads that a diode is on; on a board with a module no supply, which other parts are on too."""
+    nets = dict.fromkeys(net for diode in diodes for _, net in diode.nets if net != "GND")
+    return [net for net in nets if not (board.module and net in board.supplies)]
 
 
 def _fed(board: AuxiliaryBoard, design: Design, diodes: Sequence[Component]) -> Iterator[str]:

@@ -76,6 +76,8 @@ _LAYOUTS = (
 words would be small. A picture of pixels has no words to read."""
 _READABLE_PT = 6.0
 """Height of the least words of a drawing, where there is room for it: no layout makes them less."""
+_SMALL_SHARE = 0.8
+"""Of its size, that a drawing keeps whose words are smaller than that in any case."""
 _DPI = 200
 _TRUE_SIZE = re.compile(rb'^<svg [^>]*data-scale="1"')
 """The beginning of a drawing that a print of its page is measured by."""
@@ -224,7 +226,9 @@ def _picture(path: str, files: Files, width: float, high: float, layout: _Layout
             high = max(high, _WIDE_HIGH)
         scale = min(1.0, width / drawing.width, high / drawing.height)
         if not _TRUE_SIZE.search(data):
-            scale = min(scale, max(layout.drawing * scale, _READABLE_PT / least))
+            readable = _READABLE_PT / least
+            kept = readable if readable <= scale else _SMALL_SHARE * scale
+            scale = min(scale, max(layout.drawing * scale, kept))
         drawing.scale(scale, scale)
         drawing.width, drawing.height = drawing.width * scale, drawing.height * scale
         drawing.hAlign = "CENTER"

@@ -82,10 +82,16 @@ def _cut(design: Design) -> str:
         pen="a permanent pen, " * bool(marked),
         travel_mm=cabling.travel_mm,
         controller_mm=cabling.controller_mm,
+        beyond=_beyond(cabling),
         supply_mm=cabling.supply_mm,
         slack_mm=cabling.slack_mm,
         loop=min(cabling.loops, key=lambda loop: loop.radius_mm / loop.least_mm),
     )
+
+
+def _beyond(cabling: Cabling) -> str:
+    """The way of the emitter's cable past the board."""
+    return passage(_TEXTS, "beyond").format(cabling=cabling) if cabling.beyond_mm else ""
 
 
 def _soldered(design: Design) -> str:

@@ -62,9 +62,11 @@ def bom_rows(parts: Iterable[Component]) -> Iterator[Row]:
     """The rows by field."""
     kinds: dict[tuple[str, ...], list[str]] = {}
     for part in parts:
-        key = (part.manufacturer, part.part, part.value, part.footprint.name, part.lcsc)
+        shape = part.footprint.name
+        key = (part.manufacturer, part.part, part.value, shape, part.lcsc, part.rating)
         kinds.setdefault(key, []).append(part.ref)
-    for item, ((manufacturer, number, value, footprint, lcsc), refs) in enumerate(kinds.items(), 1):
+    for item, (kind, refs) in enumerate(kinds.items(), 1):
+        manufacturer, number, value, footprint, lcsc, rating = kind
         yield {
             "item": str(item),
             "refs": ",".join(refs),
@@ -74,6 +76,7 @@ def bom_rows(parts: Iterable[Component]) -> Iterator[Row]:
             "value": value,
             "footprint": footprint,
             "lcsc": lcsc,
+            "rating": rating,
         }
 
 

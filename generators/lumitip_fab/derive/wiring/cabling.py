@@ -54,7 +54,8 @@ def derive_cabling(
     loads = _loads(config, boards.emitter, wiring, electrical)
     ends = _ends(config, boards, wiring)
     breakout, host = _named(boards.auxiliary_boards, "breakout"), _host(boards.auxiliary_boards)
-    to_supply_mm = p.controller_mm if host else p.supply_mm
+    beyond_mm = _apart_mm(breakout, "J6", "J5") if breakout else 0.0
+    to_supply_mm = p.controller_mm + beyond_mm if host else p.supply_mm
     fed, switched = _parted(_pads(boards.emitter), ends["emitter"])
     parts = [
         (boards.emitter, fed, loads.lit, to_supply_mm),
@@ -101,6 +102,7 @@ def derive_cabling(
         travel_mm=travel_mm,
         supply_mm=p.supply_mm,
         controller_mm=p.controller_mm,
+        beyond_mm=beyond_mm,
         slack_mm=p.slack_mm,
         step_mm=STEP_MM,
         most_a_per_mm2=MOST_A_PER_MM2,
@@ -112,6 +114,12 @@ def derive_cabling(
 def reach_mm(finger: Finger, outline: Outline) -> float:
     """From the farthest pad of a connector to the middle of the finger's gripper end."""
     return max(abs(x) + y - outline.end_y_mm for x, y in finger.connector.pads)
+
+
+def _apart_mm(board: AuxiliaryBoard, *refs: str) -> float:
+    """Distance of the wire pads of two connectors along a board."""
+    first, other = (d.y_mm for ref in refs for d in board.components if d.ref == ref)
+    return abs(first - other)
 
 
 def _loads(config: Input, emitter: Finger, wiring: Wiring, electrical: Electrical) -> Loads:
