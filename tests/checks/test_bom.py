@@ -96,7 +96,7 @@ EDITS = [
     ("boards/receiver/order/generic_receiver_bom.csv", ",Nexperia,", ",,", {"numbered"}),
     ("boards/receiver/order/generic_receiver_bom.csv", ",Nexperia,", ",any,", {"numbered"}),
     ("mould/emitter_casting.md", "part A | **", "part A | **1", {"silicone"}),
-    ("wiring/cables.csv", "BK,0.08,250", "BK,0.08,950", {"wire"}),
+    ("wiring/cables.csv", "BK,0.08,270", "BK,0.08,970", {"wire"}),
 ]
 
 

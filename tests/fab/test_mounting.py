@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -44,8 +45,23 @@ def words(text: str) -> str:
     return " ".join(text.split())
 
 
-def test_the_gripper_gets_the_supply_before_the_fuse(written: Written) -> None:
+def modest(design: Design) -> Design:
+    """With a gripper whose current is not known."""
+    return replace(design, mount=replace(design.mount, supply_a=0.0))
+
+
+def test_a_gripper_that_draws_more_gets_its_makers_cable(written: Written) -> None:
     step = steps(written())
+    assert "takes up to 1 A" in step and "board carry 0.54 A" in step
+    assert "use the cable that its maker has for robots without such a coupling" in step
+    assert "put a fuse of the gripper's own rating" not in step
+    less = written()
+    less = replace(less, mount=replace(less.mount, supply_a=0.5))
+    assert "carry 0.54 A: either will do" in steps(less)
+
+
+def test_the_gripper_gets_the_supply_before_the_fuse(written: Written) -> None:
+    step = steps(modest(written()))
     assert "The robot's lines are on J2. Its 24 V are on J3.7 and J3.8, before the fuse" in step
     work = ["use the cable that its maker has", "Take the gripper off", "wires in the same socket"]
     work += ["Connect the gripper with its cable, and plug the socket of W3 in at J3"]
@@ -74,7 +90,7 @@ def test_each_contact_of_a_socket_has_what_it_carries_and_its_wire(written: Writ
 
 
 def test_the_gripper_s_own_cable_has_a_fuse_and_a_limit(written: Written) -> None:
-    step = steps(written())
+    step = steps(modest(written()))
     assert "at most 0.09 mm² of copper, which at 3 A/mm² is 0.27 A, and together 0.54 A" in step
     assert "a fuse of the gripper's own rating into the wire that starts there" in step
     assert "40 mm longer than their way" in step
@@ -114,7 +130,9 @@ def test_ties_close_the_arms_from_outside(written: Written, preset: str, robot: 
         for text in ("tie through each arm lug", "Clip the arms", "to a loop of some")
     )
     assert first < clipped < closed
-    assert f"wires of {robot} leave towards the robot" in " ".join(step.split())
+    assert f"the edge of {robot} towards the robot, that of J5 towards the fingers" in " ".join(
+        step.split()
+    )
     apart = [holder.cradle_mm + holder.wall_mm - holder.body_mm / 2, holder.arm_lugs[0].face_mm]
     assert apart[0] > 3 and apart[1] == pytest.approx(holder.cradle_mm + holder.wall_mm)
     ties = next(p.quantity for p in design.purchase.pieces if p.item.startswith("cable tie"))
@@ -123,7 +141,7 @@ def test_ties_close_the_arms_from_outside(written: Written, preset: str, robot: 
 
 
 def test_another_supply_is_named_by_its_voltage(written: Written) -> None:
-    step = steps(written({"supply.voltage_v": 12.0}))
+    step = steps(modest(written({"supply.voltage_v": 12.0})))
     assert "Its 12 V are on J3.7 and J3.8" in step and "Its 24 V" not in step
     asked = "entry says 24 V for the supply contact, and this flange takes 12 V."
     assert asked in step and "for the supply contact" not in steps(written())
@@ -144,7 +162,7 @@ def test_a_supply_behind_the_fuse_is_not_offered(written: Written) -> None:
 
 
 def test_a_flange_without_lines_names_none(written: Written) -> None:
-    step = steps(written(CLOSED))
+    step = steps(modest(written(CLOSED)))
     assert "The robot's lines" not in step and "Its 24 V are on J3.7" in step
 
 
