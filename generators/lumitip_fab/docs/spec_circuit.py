@@ -113,7 +113,12 @@ def _phototransistor(design: Design) -> Iterator[Row]:
         return rows_of("floating", slow_ms=slow_ms, spread=spread)
     channels = 2 ** len(design.wiring.select_pins)
     scan_ms = (channels * channel.wait_us + len(design.layout) * CONVERSION_US) / 1000
-    return rows_of("loaded", channel=channel, spread=spread, scan_ms=scan_ms)
+    slow = ""
+    if channels * channel.wait_us > channel.most_scan_us:
+        rate, most_us = 1e6 / channel.most_scan_us, channel.most_scan_us / channels
+        ohm = design.wiring.pull_up_ohm * most_us / channel.wait_us
+        slow = f". For {rate:.0f} scans a second receiver.pull_up_ohm is {ohm:.0f} or less"
+    return rows_of("loaded", channel=channel, spread=spread, scan_ms=scan_ms, slow=slow)
 
 
 def ambient_rows(design: Design) -> Iterator[Row]:

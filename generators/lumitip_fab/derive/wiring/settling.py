@@ -1,14 +1,13 @@
 """How fast a channel settles, and how much of its range a bare cell uses."""
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from lumitip_fab.config.automatic import automatic_fields
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.ambient import scan_us
 from lumitip_fab.derive.wiring.protection import protecting_board
-from lumitip_fab.derive.wiring.ratings import sold_to
 from lumitip_fab.derive.wiring.section import REACH_MM
 
 SCANS_PER_S = 200
@@ -94,22 +93,18 @@ def light_share(config: Input, current_ma: float, pull_up_ohm: float) -> float:
 
 
 def refuse_slow(config: Input, wait_us: float | None, faults: Diagnostics) -> None:
-    """Refuse what makes a scan too slow: a written pull-up, or a capacitor at the analog pins."""
-    if wait_us is None:
+    """Refuse a capacitor at the analog pins with which a scan takes too long."""
+    guarded = protecting_board(config) is not None and config.parts.protection.capacitor
+    if wait_us is None or not guarded:
         return
-    ohm, most_ohm = config.parameters.receiver.pull_up_ohm, most_pull_up_ohm(config)
-    allowed: dict[str, Any] = {"most_ms": MOST_SCAN_US / 1000, "rate": SCANS_PER_S}
+    takes_us = scan_us(config, wait_us)
     faults.unless(
-        ohm <= most_ohm,
-        "waits_long",
-        waits_ms=MOST_SCAN_US / 1000 * ohm / most_ohm,
-        wire_mm=_wire_mm(config),
-        most=sold_to(most_ohm),
-        **allowed,
+        takes_us <= MOST_SCAN_US,
+        "scan_slow",
+        takes_ms=takes_us / 1000,
+        most_ms=MOST_SCAN_US / 1000,
+        rate=SCANS_PER_S,
     )
-    if ohm <= most_ohm and protecting_board(config) and config.parts.protection.capacitor:
-        takes_us = scan_us(config, wait_us)
-        faults.unless(takes_us <= MOST_SCAN_US, "scan_slow", takes_ms=takes_us / 1000, **allowed)
 
 
 def _us_per_ohm(line: Line) -> float:
