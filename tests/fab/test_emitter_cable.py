@@ -26,10 +26,10 @@ def test_it_is_longer_by_the_way_along_the_board() -> None:
     loops = {loop.cable: loop.run_mm for loop in design.cabling.loops}
     assert loops["W1"] - loops["W2"] == pytest.approx(beyond_mm)
     cut, _ = wiring_steps(design)
-    assert f"those of the emitter another {beyond_mm:.0f} mm" in " ".join(cut.text.split())
+    assert f"the emitter's {beyond_mm:.0f} mm more" in " ".join(cut.text.split())
 
 
 def test_a_controller_on_the_flange_has_both_cables_at_one_end() -> None:
     design = derive(load(DESIGN / "presets" / "integrated.toml"))
     assert design.cabling.beyond_mm == 0.0
-    assert "those of the emitter another" not in wiring_steps(design)[0].text
+    assert "mm more" not in wiring_steps(design)[0].text
