@@ -58,21 +58,24 @@ def test_an_automatic_pull_up_is_fast_enough_over_any_wire(file: Write, current_
     )
     design = derive(load(file(far)))
     wait_us = design.electrical.channel.wait_us
-    assert wait_us and 0.8 * MOST_MS < INPUTS * wait_us / 1000 <= MOST_MS
+    scan_ms = INPUTS * (wait_us or 0.0) / 1000 + 32 * 0.03
+    assert 0.8 * MOST_MS < scan_ms <= MOST_MS
     (reason,) = [c.reason for c in design.choices if c.field == "receiver.pull_up_ohm"]
     assert "settles too slowly" in reason
     assert f"{100 * design.electrical.channel.light_share:.0f} % of its range" in reason
 
 
-def test_the_spec_names_the_pull_up_that_is_fast_enough(file: Write) -> None:
+def test_the_spec_names_a_pull_up_that_is_fast_enough(file: Write) -> None:
     own = '[receiver]\nload = "each"\npull_up_ohm = {}\n'
 
     def reason(ohm: float) -> str:
         rows = channel_rows(derive(load(file(own.format(ohm)))))
         return next(r.reason for r in rows if r.quantity == "... of a phototransistor")
 
-    found = re.search(r"For 200 scans a second receiver.pull_up_ohm is (\d+) or less", reason(75e3))
-    assert found is not None and 56000 < int(found[1]) < 62000
-    assert "200 scans" not in reason(56e3)
-    wait_us = derive(load(file(own.format(56000.0)))).electrical.channel.wait_us
-    assert wait_us and 8 * wait_us / 1000 <= MOST_MS
+    found = re.search(r"fewer than 200 a second. A pull-up of (\d+) Ω is faster", reason(75e3))
+    assert found is not None
+    fast_ohm = float(found[1])
+    assert "fewer than" not in reason(fast_ohm)
+    wait_us = derive(load(file(own.format(fast_ohm)))).electrical.channel.wait_us
+    assert wait_us and 8 * wait_us / 1000 + 32 * 0.03 <= MOST_MS
+    assert "fewer than" in reason(1.1 * fast_ohm // 1000 * 1000)

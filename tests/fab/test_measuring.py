@@ -54,8 +54,8 @@ def test_figures_without_a_sure_source_are_measured(written: Written) -> None:
         "contacts_depth_mm": "couplings.toml",
     }
     text = " ".join(measuring(design).split())
-    assert "in `grippers.toml` below `[robotiq_2f85]`" in text
-    assert 'in `couplings.toml` below `["Robotiq I/O"]`' in text
+    assert "`grippers.toml` below `[robotiq_2f85]`" in text
+    assert '`couplings.toml` below `["Robotiq I/O"]`' in text
 
 
 def test_a_measured_figure_leaves_the_list(written: Written, inputs: dict[str, Input]) -> None:

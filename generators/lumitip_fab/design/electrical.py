@@ -77,6 +77,10 @@ class Channel:
     light_share: float
     """Light of a bare cell at the LEDs' current, as a share of what saturates a pull-up; above 1 it
     is cut off."""
+    whole_range_ohm: float
+    """The greatest pull-up that is sold with which a bare cell is not cut off."""
+    fast_ohm: float
+    """The greatest own pull-up that is sold with which a scan takes `most_scan_us` at most."""
     dark_current_na: float
     saturation_v: float
     on_resistance_ohm: float

@@ -109,7 +109,6 @@ def _thick(pcb_mm: float) -> str:
         low_mm=pcb_mm - off_mm,
         high_mm=pcb_mm + off_mm,
         most_mm=pcb_mm + PROUD_MM,
-        deeper_mm=off_mm,
         film_mm=GLUE_FILM_MM,
     )
     return f"{text}\n"

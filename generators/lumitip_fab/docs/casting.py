@@ -208,6 +208,7 @@ def _tried(design: Design) -> str:
         silicone=mould.silicone,
         inhibited_by=", ".join(mould.inhibited_by),
         trial_g=_trial(mould),
+        rest_mm=rest_mm(design.mount),
         spot=f"{'across the glue round' if design.stack.sunk else 'beside'} the board",
         drying=f", twice {mould.primer_dry_min:g} min to dry" * primed,
         primer=f"{mould.primer}, a fine brush, " * primed,

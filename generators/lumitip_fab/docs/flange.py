@@ -82,7 +82,8 @@ def _boarded(design: Design, flange: Flange) -> Iterator[str]:
     """Sockets on wires, spring contacts, and the board alone on a bench supply."""
     own = gripper_headers(design.auxiliary_boards)
     for header, cable in plugs(design):
-        shared = _text("shared", header=header) if header in own else ""
+        joint = header in own and feeds_gripper(design)
+        shared = _text("shared", header=header) if joint else ""
         how = pressed(design.cabling)
         yield _text("socketed", cable=cable, header=header, shared=shared, pressed=how)
     yield _text("contacts", flange=flange)
@@ -141,17 +142,30 @@ def _lights(design: Design) -> list[Indicator]:
 def gripper_cable(design: Design) -> str:
     """The choice of the gripper's cable: where its supply and lines are on the flange's board."""
     board = _flange(design)
-    headers = front_headers(board)
-    raw = _raw(design)
-    pads = [f"{part.ref}.{number}" for part in headers for number, net in part.nets if net == raw]
+    headers, pads = front_headers(board), _raw_pads(design)
     supply = _from_robot(design, pads) if pads else ""
     own = [part.ref for part in headers if {net for _, net in part.nets} - {*board.supplies}]
     lines = _text("lines", lines=listed(own)) if own else ""
-    mount, most_a = design.mount, len(pads) * SLOT_MM2 * design.cabling.most_a_per_mm2
-    if pads and mount.supply_a > most_a:
+    mount, most_a = design.mount, _most_a(design, pads)
+    if pads and not feeds_gripper(design):
         return _text("makers_cable", mount=mount, most_a=most_a)
     drawn = _text("drawn", mount=mount, most_a=most_a) if pads and mount.supply_a else ""
     return _text("gripper_cable", supply=supply or _text("behind_fuse"), lines=lines, drawn=drawn)
+
+
+def feeds_gripper(design: Design) -> bool:
+    """Whether the contacts of the headers carry what the gripper draws, as far as that is known."""
+    return design.mount.supply_a <= _most_a(design, _raw_pads(design))
+
+
+def _raw_pads(design: Design) -> list[str]:
+    """Contacts of the headers that have the robot's supply before the fuse."""
+    raw, headers = _raw(design), front_headers(_flange(design))
+    return [f"{part.ref}.{number}" for part in headers for number, net in part.nets if net == raw]
+
+
+def _most_a(design: Design, pads: list[str]) -> float:
+    return len(pads) * SLOT_MM2 * design.cabling.most_a_per_mm2
 
 
 def _from_robot(design: Design, pads: list[str]) -> str:

@@ -14,15 +14,15 @@ _GRIPPER_FILE, _COUPLING_FILE = "grippers.toml", "couplings.toml"
 def measuring(design: Design) -> str:
     """The step: each figure that is not sure, with what the design uses, and how to measure it."""
     mount = design.mount
-    places = [f"in `{_GRIPPER_FILE}` below `[{mount.gripper}]`"] * bool(mount.to_measure)
+    places = [f"`{_GRIPPER_FILE}` below `[{mount.gripper}]`"] * bool(mount.to_measure)
     for flange in design.flanges:
-        place = f'in `{_COUPLING_FILE}` below `["{flange.coupling}"]`'
+        place = f'`{_COUPLING_FILE}` below `["{flange.coupling}"]`'
         places += [place] * bool(_of_coupling(flange))
     return _text(
         "measured_first",
         rows="\n".join(_rows(design)),
         title=as_written(mount.title),
-        written=_text("measured_in", places=", ".join(places)) + " " if places else "",
+        written=_text("measured_in", places=" or ".join(places)) + " " if places else "",
         gripper_cable="".join(gripper_cable(design) for _ in design.flanges),
     )
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from lumitip_fab.design import Design, Holder
 from lumitip_fab.design.frames import gripper_to_tool
 from lumitip_fab.docs.cable_ways import cable_ways
-from lumitip_fab.docs.flange import plugs
+from lumitip_fab.docs.flange import feeds_gripper, plugs
 from lumitip_fab.docs.steps import numbered
 from lumitip_fab.text import listed, passage
 
@@ -29,7 +29,12 @@ def mounting_steps(design: Design) -> Iterator[str]:
         "mounted",
         work=numbered(_finger_work(design)),
         needs=", ".join(
-            ["the keys", *_ties(_tied(design)), *["calipers"] * bool(design.gauge_cards)]
+            [
+                "the keys",
+                *_ties(_tied(design)),
+                *[design.mould.tape] * bool(design.holders),
+                *["calipers"] * bool(design.gauge_cards),
+            ]
         ),
         minutes=FINGERS_MIN,
         ways=cable_ways(design),
@@ -86,7 +91,9 @@ def _finger_work(design: Design) -> Iterator[str]:
     yield from _supplied(design)
     if design.gauge_cards:
         yield _text("measured_fingers", thickness_mm=design.stack.thickness_mm)
-    yield _text("force_first", rated_n=design.strength.rated_force_n)
+    aside = _text("fixed_aside" if design.holders else "laid_aside")
+    own = _text("own_supply") * (bool(design.flanges) and not feeds_gripper(design))
+    yield _text("force_first", aside=aside, own=own, rated_n=design.strength.rated_force_n)
     yield _text("screwed_on", bolts=len(mount.bolt_u_mm), mount=mount)
     frames = design.stack, mount, design.closing, design.system
     face = "the robot's flange" if design.flanges else "the gripper's own face"

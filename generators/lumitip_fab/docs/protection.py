@@ -9,6 +9,8 @@ from lumitip_fab.text import listed, passage, runs
 
 ESD, TVS, FUSE, MOSFET = "esd diode", "tvs diode", "fuse", "transistor"
 SCHOTTKY = "schottky diode"
+CONTROLLER = "3V3"
+"""Net of the supply of controller and photodetectors."""
 
 
 def protection_note(board: AuxiliaryBoard, design: Design) -> str:
@@ -66,7 +68,8 @@ def _of(board: AuxiliaryBoard, design: Design) -> Iterator[str]:
 def _pads(board: AuxiliaryBoard, diodes: Sequence[Component]) -> list[str]:
     """Pads that a diode is on; on a board with a module no supply, which other parts are on too."""
     nets = dict.fromkeys(net for diode in diodes for _, net in diode.nets if net != "GND")
-    return [net for net in nets if not (board.module and net in board.supplies)]
+    others = {*board.supplies, CONTROLLER} if board.module else set()
+    return [net for net in nets if net not in others]
 
 
 def _fed(board: AuxiliaryBoard, design: Design, diodes: Sequence[Component]) -> Iterator[str]:

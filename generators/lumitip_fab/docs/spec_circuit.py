@@ -93,9 +93,8 @@ def _light(design: Design) -> Iterator[Row]:
     share, target_ma = design.electrical.channel.light_share, design.electrical.strings.target_ma
     if share <= CUT_OFF_SHARE:
         return rows_of("within", percent=100 * share, target_ma=target_ma)
-    fitting = design.wiring.pull_up_ohm / share
-    covered = 100 * (1 - 1 / share)
-    return rows_of("beyond", share=share, target_ma=target_ma, covered=covered, fitting=fitting)
+    covered, ohm = 100 * (1 - 1 / share), design.electrical.channel.whole_range_ohm
+    return rows_of("beyond", share=share, target_ma=target_ma, covered=covered, ohm=ohm)
 
 
 def _phototransistor(design: Design) -> Iterator[Row]:
@@ -114,10 +113,9 @@ def _phototransistor(design: Design) -> Iterator[Row]:
     channels = 2 ** len(design.wiring.select_pins)
     scan_ms = (channels * channel.wait_us + len(design.layout) * CONVERSION_US) / 1000
     slow = ""
-    if channels * channel.wait_us > channel.most_scan_us:
-        rate, most_us = 1e6 / channel.most_scan_us, channel.most_scan_us / channels
-        ohm = design.wiring.pull_up_ohm * most_us / channel.wait_us
-        slow = f". For {rate:.0f} scans a second receiver.pull_up_ohm is {ohm:.0f} or less"
+    if 1000 * scan_ms > channel.most_scan_us and design.wiring.pull_up_ohm > channel.fast_ohm:
+        rate = 1e6 / channel.most_scan_us
+        slow = f": fewer than {rate:.0f} a second. A pull-up of {channel.fast_ohm:g} Ω is faster"
     return rows_of("loaded", channel=channel, spread=spread, scan_ms=scan_ms, slow=slow)
 
 

@@ -10,11 +10,12 @@ from lumitip_fab.derive.boards.plug_in import derive_plug_in
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.ambient import derive_ambient
 from lumitip_fab.derive.wiring.protection import derive_protection
-from lumitip_fab.derive.wiring.ratings import RESISTOR_TOLERANCE, SUPPLY_TOLERANCE
+from lumitip_fab.derive.wiring.ratings import RESISTOR_TOLERANCE, SUPPLY_TOLERANCE, sold_to
 from lumitip_fab.derive.wiring.settling import (
     MOST_SCAN_US,
     light_share,
     line_of,
+    most_pull_up_ohm,
     refuse_slow,
     wait_us,
 )
@@ -106,10 +107,13 @@ def _channel(config: Input) -> Channel:
     change_v = dark_v - full_v
     if own:  # the line shares its charge with the dark collector before both are pulled up
         change_v *= line_pf / (line_pf + detector.capacitance_pf)
+    share = light_share(config, p.emitter.current_ma, pull_up)
     return Channel(
         supply_v=supply,
         light_current_ua=detector.light_current_ua,
-        light_share=light_share(config, p.emitter.current_ma, pull_up),
+        light_share=share,
+        whole_range_ohm=sold_to(pull_up / share),
+        fast_ohm=sold_to(most_pull_up_ohm(config)),
         dark_current_na=detector.dark_current_na,
         saturation_v=detector.saturation_v,
         on_resistance_ohm=mux.on_resistance_ohm,

@@ -46,7 +46,7 @@ def line_of(config: Input, capacitor: bool = True) -> Line:
     mux, controller, guard = parts.receiver.multiplexer, parts.controller.board, parts.protection
     wire_pf = WIRE_PF_PER_M * _wire_mm(config) / 1000
     total_pf = mux.common_pf + wire_pf + controller.input_pf
-    if protecting_board(config) is None or guard.diode is None:
+    if guard.diode is None or protecting_board(config) is None:
         return Line(wire_pf, total_pf, 0.0, 0.0)
     extra_pf = 1000 * guard.capacitor.capacitance_nf if capacitor and guard.capacitor else 0.0
     total_pf += guard.diode.capacitance_pf + extra_pf
@@ -71,12 +71,14 @@ def wait_us(config: Input, line: Line) -> float | None:
 
 
 def most_pull_up_ohm(config: Input) -> float:
-    """The greatest pull-up with which `SCANS_PER_S` are waited for (ohm)."""
+    """The greatest pull-up with which there are `SCANS_PER_S` (ohm); of so many cells that their
+    conversions take more than half of that time, with which the waits take the other half."""
     if config.parameters.receiver.load != "each":
         return MOST_SHARED_OHM
     found = line_of(config, capacitor=False)
     inputs = 2 ** len(config.parts.receiver.multiplexer.select)
-    most_ohm: float = (MOST_SCAN_US / inputs - found.series_us) / _us_per_ohm(found)
+    waits_us = max(MOST_SCAN_US - scan_us(config, 0.0), MOST_SCAN_US / 2)
+    most_ohm: float = (waits_us / inputs - found.series_us) / _us_per_ohm(found)
     return most_ohm
 
 
