@@ -29,14 +29,12 @@ def _held(design: Design, end: Terminal) -> Iterator[str]:
             yield f"thread beside {end.connector}"
     fingers = {finger.name for finger in design.fingers}
     if end.board in fingers and design.mount.lugs:
-        yield "tie at the block's cable lug"
+        yield "block's cable lug"
     elif end.board in fingers and not ties[end.board]:
         yield "tie round the gripper"
     for holder in design.holders:
         named = [lug.name for lug in holder.lugs if holder.auxiliary == end.board]
-        yield from (
-            f"tie at the holder's cable lug {name}" for name in named if name == end.connector
-        )
+        yield from (f"cable lug {name}" for name in named if name == end.connector)
     if end.board == "supply":
         yield "its terminals"
     elif (end.board, end.connector) in _headers(design):

@@ -32,7 +32,7 @@ def mounting_steps(design: Design) -> Iterator[str]:
             [
                 "the keys",
                 *_ties(_tied(design)),
-                *[design.mould.tape] * bool(design.holders),
+                *["the tape"] * bool(design.holders),
                 *["calipers"] * bool(design.gauge_cards),
             ]
         ),
