@@ -10,6 +10,7 @@ from lumitip_fab.checks.readers.kicad_board import read_board
 from lumitip_fab.text import runs
 from manual_reader import read_html
 
+RATING = re.compile(r", [\d.]+ V$")
 HEADING = re.compile(r"Parts of the (\w+) board")
 
 
@@ -31,10 +32,9 @@ def test_every_part_is_listed(built: Callable[[str], Path], preset: str) -> None
     shown = {}
     for chapter in read_html(out / "manual/manual.html").chapters:
         if found := HEADING.fullmatch(chapter.heading):
-            (table,) = chapter.tables
-            rows = table[1:]
+            rows = chapter.tables[0][1:]
             values = {
-                ref: value.removesuffix(" (by hand)")
+                ref: RATING.sub("", value.removesuffix(" (by hand)"))
                 for refs, value, _ in rows
                 for ref in expanded(refs)
             }
