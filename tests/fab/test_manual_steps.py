@@ -48,7 +48,7 @@ def test_the_force_that_a_finger_bears_is_named_before_the_gripper_closes(output
     )
     limit = mount.index(f"Limit the force of the gripper to {strength.rated_force_n:g} N")
     assert f"up to {strength.gripper_n:g} N, which can break a finger" in mount
-    assert limit < mount.index("Many grippers must be activated") < mount.index("screw each finger")
+    assert limit < mount.index("Many grippers are activated") < mount.index("screw each finger")
     assert mount.index("screw each finger on") < mount.index("Open and close the gripper")
 
 
@@ -210,8 +210,8 @@ def test_flange_and_mounting_are_numbered_lists_from_the_robot_to_the_fingers(
             "activate the gripper",
         ],
         "Mount the fingers": [
-            "along the outside of its lugs",
-            "Many grippers must be activated",
+            "along the outside of its cable lugs",
+            "Many grippers are activated",
             "screw each finger",
             "Open and close",
         ],
