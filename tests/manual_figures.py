@@ -70,13 +70,12 @@ def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
     }
     wanted |= {f"boards/{name}/{name}_back.png" for name in behind}
     wanted |= {f"boards/{name}/{name}_assembly_front.svg" for name in boards}
-    mounted = {f.name: f.parts for f in design.fingers}
-    mounted |= {board.name: board.components for board in design.auxiliary_boards}
-    wanted |= {
-        f"boards/{name}/{name}_assembly_back.svg"
-        for name, parts in mounted.items()
-        if any(part.part and part.side == "back" for part in parts)
+    bare = {
+        board.name
+        for board in design.auxiliary_boards
+        if not any(part.part and part.side == "back" for part in board.components)
     }
+    wanted |= {f"boards/{name}/{name}_assembly_back.svg" for name in behind - bare}
     shown = dict(manual.pictures)
     wrong = sorted(wanted ^ shown.keys())
     for name in sorted(wanted & shown.keys()):
@@ -122,6 +121,10 @@ def _wrong_units(manual: Manual, design: Design) -> list[str]:
     volts |= {lit.output_v for lit in design.electrical.indicators}
     for contact in (c for f in design.flanges for c in f.contacts if c.kind == "supply"):
         volts.add(float(contact.carries.removesuffix("V")))
+    rated = [part.rating for board in design.auxiliary_boards for part in board.components]
+    volts |= {float(rating.removesuffix(" V")) for rating in rated if rating}
+    capacitors = (design.packages.capacitor, design.packages.bulk)
+    volts |= {capacitor.rated_v for capacitor in capacitors if capacitor is not None}
     led = design.packages.led
     if not led.mark_is_known:  # 0.15 V less at the 1 mA of a multimeter
         volts.add(round(led.forward_voltage_v - 0.15, 1))
