@@ -91,9 +91,8 @@ def _finger_work(design: Design) -> Iterator[str]:
     yield from _supplied(design)
     if design.gauge_cards:
         yield _text("measured_fingers", thickness_mm=design.stack.thickness_mm)
-    aside = _text("fixed_aside" if design.holders else "laid_aside")
     own = _text("own_supply") * (bool(design.flanges) and not feeds_gripper(design))
-    yield _text("force_first", aside=aside, own=own, rated_n=design.strength.rated_force_n)
+    yield _text("force_first", own=own, rated_n=design.strength.rated_force_n)
     yield _text("screwed_on", bolts=len(mount.bolt_u_mm), mount=mount)
     frames = design.stack, mount, design.closing, design.system
     face = "the robot's flange" if design.flanges else "the gripper's own face"
