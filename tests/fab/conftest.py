@@ -100,3 +100,9 @@ def file(design_dir: Path, tmp_path: Path) -> Any:
         return path
 
     return write
+
+
+@pytest.fixture
+def written(inputs: dict[str, Input], vary: Vary) -> Callable[..., Design]:
+    """`written({"flange.enabled": False}, "integrated")`: such a design."""
+    return lambda changes=None, preset="published": derive(vary(inputs[preset], changes or {}))

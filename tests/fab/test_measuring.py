@@ -4,13 +4,11 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from lumitip_fab.catalogue.grippers import ToolCoupling
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.design.boards import thickness_off_mm
 from lumitip_fab.design.encoding import read_design
@@ -20,12 +18,6 @@ from lumitip_fab.text import table_of
 
 HTML = "manual/manual.html"
 Written = Callable[..., Design]
-
-
-@pytest.fixture
-def written(inputs: dict[str, Input], vary: Any) -> Written:
-    """`written({"flange.enabled": False}, "integrated")`: such a design."""
-    return lambda changes=None, preset="published": derive(vary(inputs[preset], changes or {}))
 
 
 def rows(design: Design) -> dict[str, tuple[str, ...]]:

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,59 +12,13 @@ from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.design.cabling import front_headers, plugged_headers
 from lumitip_fab.docs.bring_up import bring_up_steps
-from lumitip_fab.docs.flange import coupling_step, flange_board_step, flange_step, gripper_cable
-from lumitip_fab.docs.mounting import mounting_steps
+from lumitip_fab.docs.flange import flange_board_step
 from lumitip_fab.docs.protection import protection_note
 from lumitip_fab.docs.spec import choice_rows, rows
 from lumitip_fab.docs.wiring import wiring_note
+from mounting_text import steps, words, work
 
 Written = Callable[..., Design]
-
-
-@pytest.fixture
-def written(inputs: dict[str, Input], vary: Any) -> Written:
-    """`written({"flange.enabled": False}, "integrated")`: such a design."""
-    return lambda changes=None, preset="published": derive(vary(inputs[preset], changes or {}))
-
-
-def steps(design: Design) -> str:
-    """The steps of flange and mounting, and what is said of the gripper's cable."""
-    return words(" ".join([*map(gripper_cable, [design] * len(design.flanges)), work(design)]))
-
-
-def work(design: Design) -> str:
-    """The steps of flange and mounting, with their lines."""
-    steps = [coupling_step(design, flange) for flange in design.flanges]
-    steps += [flange_board_step(design, flange, "") for flange in design.flanges]
-    steps += [flange_step(design, flange) for flange in design.flanges]
-    return "\n\n".join([*steps, *mounting_steps(design)])
-
-
-def words(text: str) -> str:
-    return " ".join(text.split())
-
-
-def modest(design: Design) -> Design:
-    """With a gripper whose current is not known."""
-    return replace(design, mount=replace(design.mount, supply_a=0.0))
-
-
-def test_a_gripper_that_draws_more_gets_its_makers_cable(written: Written) -> None:
-    step = steps(written())
-    assert "takes up to 1 A" in step and "board carry 0.54 A" in step
-    assert "use the cable that its maker has for robots without such a coupling" in step
-    assert "put a fuse of the gripper's own rating" not in step
-    less = written()
-    less = replace(less, mount=replace(less.mount, supply_a=0.5))
-    assert "carry 0.54 A: either will do" in steps(less)
-
-
-def test_the_gripper_gets_the_supply_before_the_fuse(written: Written) -> None:
-    step = steps(modest(written()))
-    assert "The robot's lines are on J2. Its 24 V are on J3.7 and J3.8, before the fuse" in step
-    work = ["use the cable that its maker has", "Take the gripper off", "wires in the same socket"]
-    work += ["Connect the gripper with its cable, and plug the socket of W3 in at J3"]
-    assert sorted(work, key=step.index) == work
 
 
 def test_each_contact_of_a_socket_has_what_it_carries_and_its_wire(written: Written) -> None:
@@ -87,13 +40,6 @@ def test_each_contact_of_a_socket_has_what_it_carries_and_its_wire(written: Writ
         named = {(ref, f) for ref, _, _, all_ in rows for f in all_.split(", ") if " at " in f}
         assert named == ends
         assert bool(ends) != ("has a triangle" in table)
-
-
-def test_the_gripper_s_own_cable_has_a_fuse_and_a_limit(written: Written) -> None:
-    step = steps(modest(written()))
-    assert "at most 0.09 mm² of copper, which at 3 A/mm² is 0.27 A, and together 0.54 A" in step
-    assert "a fuse of the gripper's own rating into the wire that starts there" in step
-    assert "40 mm longer than their way" in step
 
 
 @pytest.mark.parametrize("preset", ["published", "flex", "integrated", "wsg50"])
@@ -138,32 +84,6 @@ def test_ties_close_the_arms_from_outside(written: Written, preset: str, robot: 
     ties = next(p.quantity for p in design.purchase.pieces if p.item.startswith("cable tie"))
     others = len(design.fingers) * bool(design.mount.lugs) + len(holder.lugs)
     assert ties - others == 2 * 2  # two loops of 280 mm, of ties of 200 mm
-
-
-def test_another_supply_is_named_by_its_voltage(written: Written) -> None:
-    step = steps(modest(written({"supply.voltage_v": 12.0})))
-    assert "Its 12 V are on J3.7 and J3.8" in step and "Its 24 V" not in step
-    asked = "entry says 24 V for the supply contact, and this flange takes 12 V."
-    assert asked in step and "for the supply contact" not in steps(written())
-
-
-LINES = ("GND", "CASING", "Von", "485+", "485-", "3V3_out", "485GND")
-SUPPLIES = ("REGULATED", "REGULATED", "SUPPLY", "SUPPLY_IN", "GND", "GND", "GND")
-BEHIND = {"flange.headers": (LINES, (*SUPPLIES[:3], "SUPPLY", *SUPPLIES[4:]))}
-CLOSED = {
-    "flange.signals": ("GND", "GND", "SUPPLY", *["NC"] * 7),
-    "flange.headers": (("GND",) * 7, SUPPLIES),
-}
-
-
-def test_a_supply_behind_the_fuse_is_not_offered(written: Written) -> None:
-    step = steps(written(BEHIND))
-    assert "do not feed the gripper from it" in step and "before the fuse" not in step
-
-
-def test_a_flange_without_lines_names_none(written: Written) -> None:
-    step = steps(modest(written(CLOSED)))
-    assert "The robot's lines" not in step and "Its 24 V are on J3.7" in step
 
 
 @pytest.mark.parametrize(

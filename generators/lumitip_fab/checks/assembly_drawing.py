@@ -10,7 +10,7 @@ from xml.etree import ElementTree as XmlTree
 
 import shapely
 
-from lumitip_fab.checks.board_read import ReadBoard, names_of, read_any
+from lumitip_fab.checks.board_read import ReadBoard, names_of, read_closed
 from lumitip_fab.checks.readers import MALFORMED
 from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.result import Measurement, Subject, unreadable
@@ -51,9 +51,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurement]:
     """Both drawings of a board; one of the back only where it has parts."""
     try:
-        read = read_any(outputs, design, name)
-        if read.outline.is_empty:
-            raise OutputError("the board has no closed edge")
+        read = read_closed(outputs, design, name)
     except OutputError as error:
         yield unreadable("assembly_drawing.readable", f"boards/{name}", str(error))
         return

@@ -16,7 +16,7 @@ from lumitip_fab.checks.cables import read_list
 from lumitip_fab.checks.readers.kicad_board import read_board
 from lumitip_fab.checks.readers.solids import Vectors
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.wiring import reach_mm, run_mm
+from lumitip_fab.checks.wire_ways import reach_mm, run_mm
 from lumitip_fab.design import Design
 from lumitip_fab.design.cabling import outer_mm
 from lumitip_fab.errors import OutputError

@@ -31,6 +31,7 @@ from lumitip_fab.design import (
     Tie,
 )
 from lumitip_fab.design.frames import applied, board_page_to_sensor, on_board_page
+from lumitip_fab.errors import OutputError
 
 _VALUE = re.compile(r"(\d+)([RKM])(\d*)")
 _CLOSED_MM = 1e-5  # ends of lines nearer than this meet
@@ -241,6 +242,19 @@ def read_any(outputs: Path, design: Design, name: str) -> ReadBoard:
             board = read_board(outputs / path_of(name))
             return ReadBoard("board", path_of(name), board, design, of)
     raise LookupError(f"no board {name!r}")
+
+
+def read_closed(outputs: Path, design: Design, name: str) -> ReadBoard:
+    """A board by its name, with its outline.
+
+    Raises:
+        OutputError: if its file cannot be read, or has no closed edge.
+        LookupError: if the design has no such board.
+    """
+    read = read_any(outputs, design, name)
+    if read.outline.is_empty:
+        raise OutputError("the board has no closed edge")
+    return read
 
 
 def on_page(box: Box) -> shapely.Polygon:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.board_read import ReadBoard, names_of, read_any
+from lumitip_fab.checks.board_read import ReadBoard, names_of, read_closed
 from lumitip_fab.checks.readers.board_picture import (
     EDGE,
     NOTHING,
@@ -40,9 +40,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurement]:
     """Both pictures of both sides of a board."""
     try:
-        read = read_any(outputs, design, name)
-        if read.outline.is_empty:
-            raise OutputError("the board has no closed edge")
+        read = read_closed(outputs, design, name)
     except OutputError as error:
         yield unreadable("pictures.readable", f"boards/{name}", str(error))
         return

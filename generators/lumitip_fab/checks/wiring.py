@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 
-import numpy as np
-
 from lumitip_fab.checks.cable_prose import measure_prose
 from lumitip_fab.checks.cables import (
     Row,
@@ -22,9 +20,9 @@ from lumitip_fab.checks.connections import PINOUTS
 from lumitip_fab.checks.diagram_texts import misread
 from lumitip_fab.checks.readers.kicad_board import KicadBoard, read_board
 from lumitip_fab.checks.result import Measurement, count, unreadable
+from lumitip_fab.checks.wire_ways import reach_mm, run_mm
 from lumitip_fab.design import Design
 from lumitip_fab.design.cabling import COLOURS, codes_of
-from lumitip_fab.design.frames import applied, board_page_to_sensor
 from lumitip_fab.errors import OutputError
 
 READS = ("wiring/*", "boards/*.kicad_pcb", "firmware/layout.h")
@@ -215,27 +213,6 @@ def _lengths(rows: tuple[Row, ...], boards: dict[str, KicadBoard], design: Desig
     worst = max(over, key=lambda mm: abs(mm - cabling.step_mm / 2), default=math.nan)
     note = "longer than reach, travel, way, slack and what bends need"
     return Measurement("wiring.lengths", _LIST, worst, 0, cabling.step_mm, "mm", note)
-
-
-def run_mm(row: Row, breakout: KicadBoard | None, design: Design) -> float:
-    """Way of a finger's wire along the gripper: the breakout's wire pads for the receiver, J5, face
-    the fingers."""
-    if row.end[0] == "supply":
-        return design.cabling.supply_mm
-    if breakout is None or row.end[0] != "breakout":
-        return design.cabling.controller_mm
-    near, end = (
-        float(np.mean([t.at[1] for p in breakout.parts if p.ref == ref for t in p.terminals]))
-        for ref in ("J5", row.end[1].partition(".")[0])
-    )
-    return design.cabling.controller_mm + abs(near - end)
-
-
-def reach_mm(board: KicadBoard, design: Design) -> float:
-    """From the farthest pad of a finger's wires to the middle of its gripper end."""
-    pads = np.array([t.at for p in board.parts if p.ref == "J1" for t in p.terminals])
-    places = applied(board_page_to_sensor(design.stack), pads)[:, :2]
-    return float((abs(places[:, 0]) + places[:, 1]).max() - design.outline.end_y_mm)
 
 
 def _currents(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:

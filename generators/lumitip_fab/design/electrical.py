@@ -67,6 +67,10 @@ class Strings:
     """None where a resistor alone sets the current."""
 
 
+CUT_OFF_SHARE = 1.1
+"""Light of a bare cell, of its range: up to here the catalogue's figure cannot tell."""
+
+
 @dataclass(frozen=True)
 class Channel:
     """Channel from a detector to the controller."""

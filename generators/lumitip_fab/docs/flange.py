@@ -141,14 +141,14 @@ def _lights(design: Design) -> list[Indicator]:
 
 def gripper_cable(design: Design) -> str:
     """The choice of the gripper's cable: where its supply and lines are on the flange's board."""
-    board = _flange(design)
-    headers, pads = front_headers(board), _raw_pads(design)
+    board, pads, mount = _flange(design), _raw_pads(design), design.mount
+    most_a = _most_a(design, pads)
+    if pads and not feeds_gripper(design):
+        return _text("makers_cable", mount=mount, most_a=most_a)
+    headers = front_headers(board)
     supply = _from_robot(design, pads) if pads else ""
     own = [part.ref for part in headers if {net for _, net in part.nets} - {*board.supplies}]
     lines = _text("lines", lines=listed(own)) if own else ""
-    mount, most_a = design.mount, _most_a(design, pads)
-    if pads and not feeds_gripper(design):
-        return _text("makers_cable", mount=mount, most_a=most_a)
     drawn = _text("drawn", mount=mount, most_a=most_a) if pads and mount.supply_a else ""
     return _text("gripper_cable", supply=supply or _text("behind_fuse"), lines=lines, drawn=drawn)
 

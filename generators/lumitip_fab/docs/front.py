@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from lumitip_fab.design import Design, HeatStep, Mask, Mould
 from lumitip_fab.docs.casting import rest_mm
+from lumitip_fab.docs.mounting import has_cable_lugs
 from lumitip_fab.text import as_written, passage
 
 WARM_UP_MIN = 5
@@ -41,7 +42,7 @@ def _words(design: Design) -> Iterator[str]:
     """Rows of the words that could be taken for one another."""
     yield _text("word_bends" if design.interfaces else "word_rigid")
     yield _text("word_block", mount=design.mount)
-    if design.mount.lugs or any(holder.lugs for holder in design.holders):
+    if has_cable_lugs(design):
         yield _text("word_lug")
     if any(holder.arm_lugs for holder in design.holders):
         yield _text("word_arm_lug")

@@ -31,7 +31,7 @@ def mounting_steps(design: Design) -> Iterator[str]:
         needs=", ".join(
             [
                 "the keys",
-                *_ties(_tied(design)),
+                *_ties(has_cable_lugs(design)),
                 *["the tape"] * bool(design.holders),
                 *["calipers"] * bool(design.gauge_cards),
             ]
@@ -53,7 +53,7 @@ def _ties(used: bool) -> list[str]:
     return ["cable ties", "side cutters"] * used
 
 
-def _tied(design: Design) -> bool:
+def has_cable_lugs(design: Design) -> bool:
     """Whether cables are tied to lugs."""
     return bool(design.mount.lugs) or any(holder.lugs for holder in design.holders)
 
@@ -86,7 +86,7 @@ def _gripper_work(design: Design) -> Iterator[str]:
 def _finger_work(design: Design) -> Iterator[str]:
     """Ties, bolts, supply, and the first stroke with the fingers on."""
     mount = design.mount
-    if _tied(design):
+    if has_cable_lugs(design):
         yield _text("tied")
     yield from _supplied(design)
     if design.gauge_cards:

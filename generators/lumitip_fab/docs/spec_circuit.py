@@ -4,13 +4,11 @@ import math
 from collections.abc import Iterator
 
 from lumitip_fab.design import Design, Wiring
-from lumitip_fab.design.electrical import AmbientScan, PlugIn, Regulation
+from lumitip_fab.design.electrical import CUT_OFF_SHARE, AmbientScan, PlugIn, Regulation
 from lumitip_fab.docs.row import Row, rows_of
 
 CONVERSION_US = 30
 """As in `settings.h` of the firmware: one conversion."""
-CUT_OFF_SHARE = 1.1
-"""Light of a bare cell, of its range: up to here the catalogue's figure cannot tell."""
 
 
 def electrical_rows(design: Design) -> Iterator[Row]:

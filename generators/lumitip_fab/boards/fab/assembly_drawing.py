@@ -1,17 +1,16 @@
 """Assembly drawing of a board's side: every part with its reference and its mark."""
 
-from collections.abc import Iterator
-from itertools import chain
 from xml.sax.saxutils import escape, quoteattr
 
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from lumitip_fab.boards.fab.svg_path import corners, disc, mirrored, path_of, short
 from lumitip_fab.boards.fab.ways import MARKED_END, MARKED_FIRST
 from lumitip_fab.boards.model import SIDES, PlacedComponent, Placement
 from lumitip_fab.boards.outline import outline_area
 from lumitip_fab.boards.placed import placed, placed_pads
-from lumitip_fab.boards.silk.strokes import silkscreen
+from lumitip_fab.boards.silk.strokes import silkscreen, upright
 from lumitip_fab.design import Box, Point, Side
 
 SCALE = 4.0
@@ -24,6 +23,7 @@ _DOT_MM, _DOT = 0.25, 0.12
 _LETTER, _FILLED, _MOST_LETTER_MM = 0.66, 0.78, 1.6
 """Width of a letter and the share of a body that it fills, in heights; and its height at most."""
 _ARC = 6  # chords of a quarter circle
+_DECIMALS = 2
 
 
 def assembly_drawings(board: Placement) -> dict[str, bytes]:
@@ -39,7 +39,7 @@ def _mounted(board: Placement, side: Side) -> list[PlacedComponent]:
 
 def _drawing(board: Placement, side: Side) -> bytes:
     body, seen = outline_area(board), _Seen(side)
-    holes = [_disc(at, diameter_mm / 2) for at, diameter_mm in board.unplated]
+    holes = [disc(*at, diameter_mm, _ARC) for at, diameter_mm in board.unplated]
     parts = _mounted(board, side)
     reach = [shapely.box(*part.body_on_board.bounds_mm) for part in parts]
     left, low, right, high = seen.area(shapely.union_all([body, *reach]).buffer(_MARGIN_MM)).bounds
@@ -71,18 +71,18 @@ class _Seen:
     """A side as it is seen: from the back, x is mirrored."""
 
     def __init__(self, side: Side) -> None:
-        self.sign = 1 if side == "front" else -1
+        self.side = side
 
     def area(self, area: BaseGeometry) -> BaseGeometry:
-        return shapely.transform(area, lambda at: at * (self.sign, 1))
+        return area if self.side == "front" else mirrored(area)
 
     def at(self, point: Point) -> Point:
-        return self.sign * point[0], point[1]
+        return point if self.side == "front" else (-point[0], point[1])
 
     def upright_deg(self, angle_deg: float) -> float:
         """An angle of a text, turned by half turns until it is read from below or the right."""
-        turned = self.sign * angle_deg % 180.0
-        return turned - 180.0 if turned > 90.0 else turned
+        turned = upright(angle_deg, self.side)
+        return turned if self.side == "front" else -turned
 
 
 def _part(seen: _Seen, part: PlacedComponent) -> str:
@@ -116,16 +116,17 @@ def _mark(part: PlacedComponent) -> tuple[BaseGeometry | None, Box]:
     left, low, right, high = body.grown(-1.3 * radius).bounds_mm
     first_pad = shape.pads[0]
     at = min(max(first_pad.x_mm, left), right), min(max(first_pad.y_mm, low), high)
-    return _disc(placed(part, *at), radius), body
+    return disc(*placed(part, *at), 2 * radius, _ARC), body
 
 
 def _reference(seen: _Seen, part: PlacedComponent, room: Box) -> str:
     """Along the room, as high as it allows."""
     sides = sorted((room.width_mm, room.length_mm))
     size = min(_FILLED * sides[0], sides[1] / (_LETTER * len(part.ref)), _MOST_LETTER_MM)
-    x, y = seen.at(placed(part, *room.centre_mm))
+    at = seen.at(placed(part, *room.centre_mm))
     along = part.angle_deg + (90.0 if room.length_mm > room.width_mm else 0.0)
-    turn = f"translate({_short(x)} {_short(-y)}) rotate({_short(-seen.upright_deg(along))})"
+    x, y, turned = (short(v, _DECIMALS) for v in (at[0], -at[1], -seen.upright_deg(along)))
+    turn = f"translate({x} {y}) rotate({turned})"
     wide = _LETTER * len(part.ref) * size
     # Contacts lie under the letters.
     plate = (
@@ -142,14 +143,14 @@ def _reference(seen: _Seen, part: PlacedComponent, room: Box) -> str:
 def _copper(board: Placement, side: Side) -> BaseGeometry:
     """Pads of a side, without their drills."""
     pads = [p for part in board.components for p in placed_pads(part) if side in p.sides]
-    drills = [_disc((p.x_mm, p.y_mm), p.pad.drill_mm / 2) for p in pads if p.pad.drill_mm]
+    drills = [disc(p.x_mm, p.y_mm, p.pad.drill_mm, _ARC) for p in pads if p.pad.drill_mm]
     return shapely.union_all([p.area for p in pads]) - shapely.union_all(drills)
 
 
 def _printed(board: Placement, seen: _Seen, side: Side) -> str:
     """What is printed on a side, in a fine line."""
     lines = "".join(
-        "M" + "L".join(_corner(seen.at(point)) for point in stroke.points)
+        corners(map(seen.at, stroke.points), _DECIMALS)
         for where, stroke in silkscreen(board)
         if where == side
     )
@@ -164,31 +165,9 @@ def _box(part: PlacedComponent, box: Box) -> BaseGeometry:
     return shapely.Polygon([placed(part, *corner) for corner in corners])
 
 
-def _disc(at: Point, radius_mm: float) -> BaseGeometry:
-    return shapely.Point(at).buffer(radius_mm, quad_segs=_ARC)
-
-
 def _stroked(width_mm: float) -> str:
     return f'stroke="{_INK}" stroke-width="{width_mm:g}" stroke-linejoin="round"'
 
 
 def _path(seen: _Seen, area: BaseGeometry, look: str) -> str:
-    """All rings of an area, y down."""
-    corners = "".join(
-        "M" + "L".join(map(_corner, ring[:-1])) + "Z" for ring in _rings(seen.area(area))
-    )
-    return f'<path {look} fill-rule="evenodd" d="{corners}"/>'
-
-
-def _rings(area: BaseGeometry) -> Iterator[list[Point]]:
-    polygons = (p for p in shapely.get_parts(area) if p.geom_type == "Polygon")
-    for ring in chain.from_iterable((p.exterior, *p.interiors) for p in polygons):
-        yield shapely.get_coordinates(ring).tolist()
-
-
-def _corner(point: Point) -> str:
-    return f"{_short(point[0])} {_short(-point[1])}"
-
-
-def _short(value: float) -> str:
-    return f"{round(value, 2) + 0.0:g}"
+    return f'<path {look} fill-rule="evenodd" d="{path_of(seen.area(area), _DECIMALS)}"/>'

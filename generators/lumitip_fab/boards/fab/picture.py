@@ -5,12 +5,11 @@ from dataclasses import dataclass
 from typing import Any
 from xml.sax.saxutils import escape, quoteattr
 
-import numpy as np
 import shapely
-from numpy.typing import NDArray
-from shapely import LineString, Point, Polygon, affinity
+from shapely import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from lumitip_fab.boards.fab.svg_path import disc, mirrored, path_of, polygons, rings
 from lumitip_fab.boards.model import MASK_MM, SIDES, BoardModel, Stroke, opening_mm
 from lumitip_fab.boards.outline import outline_area
 from lumitip_fab.boards.placed import PlacedPad, placed_pads
@@ -67,7 +66,7 @@ def _copper(model: BoardModel, side: Side, pads: list[PlacedPad]) -> BaseGeometr
         for t in model.routing.tracks
         if t.side == side
     ]
-    vias = [_disc(v.x_mm, v.y_mm, v.diameter_mm) for v in model.routing.vias]
+    vias = [disc(v.x_mm, v.y_mm, v.diameter_mm) for v in model.routing.vias]
     fills = [fill.area for fill in model.fills if fill.side == side]
     return shapely.union_all([*tracks, *vias, *fills, *(pad.area for pad in pads)])
 
@@ -75,15 +74,15 @@ def _copper(model: BoardModel, side: Side, pads: list[PlacedPad]) -> BaseGeometr
 def _openings(model: BoardModel, pads: list[PlacedPad]) -> BaseGeometry:
     grown = [pad.area.buffer(opening_mm(pad.component), join_style="mitre") for pad in pads]
     board = model.placement
-    holes = [_disc(*at, diameter_mm + 2 * MASK_MM) for at, diameter_mm in board.unplated]
+    holes = [disc(*at, diameter_mm + 2 * MASK_MM) for at, diameter_mm in board.unplated]
     return shapely.union_all([*grown, *holes])
 
 
 def _drills(model: BoardModel, pads: list[PlacedPad]) -> BaseGeometry:
     """Holes that one sees through: vias are covered."""
     board = model.placement
-    holes = [_disc(*at, diameter_mm) for at, diameter_mm in board.unplated]
-    plated = [_disc(p.x_mm, p.y_mm, p.pad.drill_mm) for p in pads if p.pad.drill_mm]
+    holes = [disc(*at, diameter_mm) for at, diameter_mm in board.unplated]
+    plated = [disc(p.x_mm, p.y_mm, p.pad.drill_mm) for p in pads if p.pad.drill_mm]
     return shapely.union_all([*holes, *plated])
 
 
@@ -93,12 +92,8 @@ def _line(stroke: Stroke) -> Polygon:
     return line.buffer(stroke.width_mm / 2, quad_segs=_ARC)
 
 
-def _disc(x_mm: float, y_mm: float, diameter_mm: float) -> Polygon:
-    return Point(x_mm, y_mm).buffer(diameter_mm / 2, quad_segs=2 * _ARC)
-
-
 def _mirrored(seen: Painted) -> Painted:
-    return Painted(seen.name, affinity.scale(seen.area, -1, 1, origin=(0, 0)), seen.colour)
+    return Painted(seen.name, mirrored(seen.area), seen.colour)
 
 
 MARGIN_MM = 1.0
@@ -118,7 +113,8 @@ def svg_picture(seen: tuple[Painted, ...], title: str) -> bytes:
     size = f'width="{right - left:g}mm" height="{high - low:g}mm"'
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" {size}>'
     drawn = "\n".join(
-        f'<path id={quoteattr(p.name)} fill="{p.colour}" fill-rule="evenodd" d="{_path(p)}"/>'
+        f'<path id={quoteattr(p.name)} fill="{p.colour}" fill-rule="evenodd" '
+        f'd="{path_of(p.area, _DECIMALS)}"/>'
         for p in seen
     )
     return f"{head}\n<title>{escape(title)}</title>\n{drawn}\n</svg>\n".encode()
@@ -138,7 +134,7 @@ def png_picture(seen: tuple[Painted, ...]) -> bytes:
     axes.set_axis_off()
     axes.set(xlim=(left, right), ylim=(low, high))
     for each in seen:
-        for polygon in _polygons(each):
+        for polygon in polygons(each.area):
             # Unlike add_patch this fits no limits to each of a thousand pieces.
             axes.add_artist(PathPatch(_outline(polygon), facecolor=each.colour, linewidth=0))
     file = io.BytesIO()
@@ -151,34 +147,12 @@ def _bounds(seen: tuple[Painted, ...]) -> tuple[float, float, float, float]:
     return left - MARGIN_MM, low - MARGIN_MM, right + MARGIN_MM, high + MARGIN_MM
 
 
-def _polygons(each: Painted) -> list[Polygon]:
-    return [p for p in shapely.get_parts(each.area) if p.geom_type == "Polygon"]
-
-
-def _rings(polygon: Polygon) -> list[NDArray[np.float64]]:
-    return [shapely.get_coordinates(r) for r in (polygon.exterior, *polygon.interiors)]
-
-
-def _path(each: Painted) -> str:
-    """All rings, y down."""
-    paths = []
-    for polygon in _polygons(each):
-        for ring in _rings(polygon):
-            corners = (f"{_short(x)} {_short(-y)}" for x, y in ring[:-1])
-            paths.append("M" + "L".join(corners) + "Z")
-    return "".join(paths)
-
-
-def _short(value: float) -> str:
-    return f"{round(value, _DECIMALS) + 0.0:g}"
-
-
 def _outline(polygon: Polygon) -> Any:
     """A polygon as matplotlib fills it: holes run the other way round."""
     from matplotlib.path import Path
 
-    rings = [Path(ring, closed=True) for ring in _rings(shapely.orient_polygons(polygon))]
-    return Path.make_compound_path(*rings)
+    closed = [Path(ring, closed=True) for ring in rings(shapely.orient_polygons(polygon))]
+    return Path.make_compound_path(*closed)
 
 
 def picture_files(model: BoardModel, mask: str) -> dict[str, bytes]:

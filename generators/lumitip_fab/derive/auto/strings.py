@@ -16,12 +16,12 @@ from lumitip_fab.derive.wiring.strings import (
     string_problems,
     strings_of,
 )
+from lumitip_fab.design.electrical import CUT_OFF_SHARE
 
 CURRENT_STEP = 0.95  # from one current that is tried to the next
 FULL_SHARE = 0.95
 """Of the current that saturates a pull-up, what a bare cell takes by the catalogue, within half a
 step of the E24 series. More would hide what dims a cell by less than the rest."""
-CUT_OFF_SHARE = 1.1  # of its range, that the light of a bare cell asks for
 STEADY_SHARE = 0.3
 """Share of the supply across a resistor that a choice of this program leaves, if the ratings allow:
 with half of it the current changes twice as much with supply and temperature."""
