@@ -1,7 +1,8 @@
 """What the manual says of flange, gripper's cable and mounting."""
 
 from lumitip_fab.design import Design
-from lumitip_fab.docs.flange import coupling_step, flange_board_step, flange_step, gripper_cable
+from lumitip_fab.docs.flange import coupling_step, flange_board_step, flange_step
+from lumitip_fab.docs.gripper_cable import gripper_cable
 from lumitip_fab.docs.mounting import mounting_steps
 
 

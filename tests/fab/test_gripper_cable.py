@@ -3,29 +3,57 @@
 from collections.abc import Callable
 from dataclasses import replace
 
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
+from lumitip_fab.docs.gripper_cable import own_cable
 from mounting_text import steps
 
 Written = Callable[..., Design]
 
 
-def modest(design: Design) -> Design:
-    """With a gripper whose current is not known."""
-    return replace(design, mount=replace(design.mount, supply_a=0.0))
+def drawing(design: Design, supply_a: float) -> Design:
+    """With a gripper that draws so much; 0 is not known."""
+    return replace(design, mount=replace(design.mount, supply_a=supply_a))
 
 
 def test_a_gripper_that_draws_more_gets_its_makers_cable(written: Written) -> None:
-    step = steps(written())
-    assert "takes up to 1 A" in step and "board carry 0.54 A" in step
+    step = steps(drawing(written(), 2.5))
+    assert "takes up to 2.5 A" in step and "board carry 2 A" in step
     assert "use the cable that its maker has for robots without such a coupling" in step
-    assert "put a fuse of the gripper's own rating" not in step
-    less = written()
-    less = replace(less, mount=replace(less.mount, supply_a=0.5))
-    assert "carry 0.54 A: either will do" in steps(less)
+    assert "put a fuse of the gripper's own rating" not in step and "the gripper's |" not in step
+    assert "has its wires in the same socket" not in step
+    assert "takes up to 1 A by its entry in `grippers.toml`, and the contacts here carry 2 A" in (
+        steps(written())
+    ), "two contacts of 1 A each, and as many of ground"
+
+
+def test_contacts_of_ground_limit_what_the_headers_carry(written: Written) -> None:
+    supplies = ("REGULATED", "SUPPLY", *("SUPPLY_IN",) * 4, "GND")
+    own = own_cable(written({"flange.headers": (LINES, supplies)}))
+    assert own.fed_from == ("J3.5", "J3.6", "J3.7", "J3.8", "J3.9", "J3.10", "J3.11", "J3.12")
+    assert own.most_a == 3, "four contacts of GND, one of them with a wire of the fingers"
+
+
+def test_what_a_gripper_s_cable_needs_is_bought(inputs: dict[str, Input]) -> None:
+    def bought(supply_a: float | None) -> dict[str, float]:
+        config = inputs["published"]
+        name, catalogue = config.parameters.coupling.gripper, config.catalogue
+        gripper = catalogue.grippers[name].model_copy(update={"supply_a": supply_a})
+        grippers = {**catalogue.grippers, name: gripper}
+        changed = catalogue.model_copy(update={"grippers": grippers})
+        pieces = derive(replace(config, catalogue=changed)).purchase.pieces
+        return {
+            p.pack: p.quantity for p in pieces if "gripper" in p.pack or p.pack.endswith("mate")
+        }
+
+    mate = "box header 2x7 mate"
+    assert bought(None) == bought(2.0) == {mate: 2, "gripper cable": 1, "gripper fuse": 1}
+    assert bought(2.1) == {mate: 1, "gripper cable by maker": 1}
 
 
 def test_the_gripper_gets_the_supply_before_the_fuse(written: Written) -> None:
-    step = steps(modest(written()))
+    step = steps(written())
     assert "The robot's lines are on J2. Its 24 V are on J3.7 and J3.8, before the fuse" in step
     work = ["use the cable that its maker has", "Take the gripper off", "wires in the same socket"]
     work += ["Connect the gripper with its cable, and plug the socket of W3 in at J3"]
@@ -33,14 +61,15 @@ def test_the_gripper_gets_the_supply_before_the_fuse(written: Written) -> None:
 
 
 def test_the_gripper_s_own_cable_has_a_fuse_and_a_limit(written: Written) -> None:
-    step = steps(modest(written()))
-    assert "at most 0.09 mm² of copper, which at 3 A/mm² is 0.27 A, and together 0.54 A" in step
+    step = steps(written())
+    assert "0.09 mm² (AWG 28) at most, which carries 1 A there" in step
+    assert "together with as many of GND they carry 2 A" in step
     assert "a fuse of the gripper's own rating into the wire that starts there" in step
     assert "40 mm longer than their way" in step
 
 
 def test_another_supply_is_named_by_its_voltage(written: Written) -> None:
-    step = steps(modest(written({"supply.voltage_v": 12.0})))
+    step = steps(written({"supply.voltage_v": 12.0}))
     assert "Its 12 V are on J3.7 and J3.8" in step and "Its 24 V" not in step
     asked = "entry says 24 V for the supply contact, and this flange takes 12 V."
     assert asked in step and "for the supply contact" not in steps(written())
@@ -61,5 +90,5 @@ def test_a_supply_behind_the_fuse_is_not_offered(written: Written) -> None:
 
 
 def test_a_flange_without_lines_names_none(written: Written) -> None:
-    step = steps(modest(written(CLOSED)))
+    step = steps(written(CLOSED))
     assert "The robot's lines" not in step and "Its 24 V are on J3.7" in step

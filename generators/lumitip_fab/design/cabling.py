@@ -2,7 +2,7 @@
 insulation."""
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from lumitip_fab.design.pcb import AuxiliaryBoard, Component
@@ -37,6 +37,12 @@ THREAD_MM = 0.5
 
 STRIP_MM = 4.0
 """Bare end of a wire: through a board, with what is cut off above the joint (assumed)."""
+
+SLOT_MM, SLOT_MM2, SLOT_A = 1.25, 0.09, 1.0
+"""Insulation, section and current, at most, of a wire in a socket for flat cable, whose slots are
+1.27 mm apart and made for AWG 28. Insulation and section are assumed: the maker's drawing was not
+read. The current is the rule of thumb for such cable and its sockets in "Ribbon Cable Current
+Rating" of Mosaic Industries."""
 
 
 def outer_mm(section_mm2: float) -> float:
@@ -167,33 +173,6 @@ class Cabling:
     """Least bend radius of a moving wire, by its outer diameter."""
     most_drop: float
     """Largest drop of voltage over the wires, both ways, as a share of the LEDs' supply."""
-
-
-def gripper_headers(auxiliary_boards: Iterable[AuxiliaryBoard]) -> list[str]:
-    """References of the flange's headers that have a line of the robot, or its supply before the
-    fuse: what the gripper's own cable starts at, sorted."""
-    return _flange_headers(
-        auxiliary_boards,
-        lambda board, net: net not in board.supplies or net.endswith(INPUT_END),
-    )
-
-
-def supplied_headers(auxiliary_boards: Iterable[AuxiliaryBoard]) -> list[str]:
-    """References of the flange's headers that have the robot's supply before the fuse, sorted."""
-    return _flange_headers(auxiliary_boards, lambda _, net: net.endswith(INPUT_END))
-
-
-def _flange_headers(
-    auxiliary_boards: Iterable[AuxiliaryBoard], wanted: Callable[[AuxiliaryBoard, str], bool]
-) -> list[str]:
-    """References of the flange's headers with a net that is wanted, sorted."""
-    return sorted(
-        part.ref
-        for board in auxiliary_boards
-        if board.name == "flange"
-        for part in front_headers(board)
-        if any(wanted(board, net) for _, net in part.nets)
-    )
 
 
 def front_headers(board: AuxiliaryBoard) -> list[Component]:

@@ -7,7 +7,6 @@ from itertools import count
 from typing import Any
 
 from lumitip_fab.design import Design
-from lumitip_fab.design.cabling import supplied_headers
 from lumitip_fab.docs.boards import faces_when_tried, ordering, pictures, soldering
 from lumitip_fab.docs.bring_up import bring_up_steps
 from lumitip_fab.docs.casting import (
@@ -19,6 +18,7 @@ from lumitip_fab.docs.casting import (
 )
 from lumitip_fab.docs.flange import coupling_step, flange_board_step, flange_step
 from lumitip_fab.docs.front import WARM_UP_MIN, front
+from lumitip_fab.docs.gripper_cable import in_the_list
 from lumitip_fab.docs.measuring import measuring
 from lumitip_fab.docs.mounting import mounting_steps
 from lumitip_fab.docs.orders import amount, money
@@ -81,18 +81,13 @@ def _bought(design: Design, files: Files) -> str:
     return _text(
         "bought",
         prices=as_written(bill["prices"]),
-        measured=_text("measured", fused=_fused(design)) if design.flanges else "",
+        measured=_text("measured", cable=in_the_list(design)) if design.flanges else "",
         lines=lines,
         total=money(bill["total"]),
         packs=packs,
         single=money(order["single"]),
         to_buy=money(order["total"]),
     )
-
-
-def _fused(design: Design) -> str:
-    """The fuse of the gripper's cable, where it starts at the robot's supply."""
-    return ", and a fuse for it" if supplied_headers(design.auxiliary_boards) else ""
 
 
 def _pack(line: dict[str, Any]) -> str:

@@ -5,12 +5,13 @@ import re
 from collections.abc import Iterator
 
 from lumitip_fab.design import AuxiliaryBoard, Design, Flange
-from lumitip_fab.design.cabling import INPUT_END, front_headers, gripper_headers, plugged_headers
+from lumitip_fab.design.cabling import INPUT_END, front_headers, plugged_headers
 from lumitip_fab.design.electrical import Indicator
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
+from lumitip_fab.docs.gripper_cable import in_volts, own_cable, probed, raw_supply
 from lumitip_fab.docs.protection import TVS, boards_of_later, protection_note
 from lumitip_fab.docs.steps import numbered
-from lumitip_fab.docs.wiring import SLOT_MM2, pressed
+from lumitip_fab.docs.wiring import pressed
 from lumitip_fab.text import as_written, listed, passage
 
 _SUPPLY = re.compile(r"[\d.]+V")
@@ -59,16 +60,17 @@ def _looked(design: Design) -> Iterator[str]:
     """The gripper off, its bolts and the coupling's contacts measured."""
     yield _text("switched_off")
     yield _text("taken_off")
-    yield _text("confirmed", volts=_volts(_raw(design)))
+    yield _text("confirmed", volts=in_volts(raw_supply(design)))
+    fed = _text("fed_from_there") * own_cable(design).feeds
     for carried in _other_supplies(design):
-        yield _text("other_supply", carried=carried, volts=_volts(_raw(design)))
+        yield _text("other_supply", carried=carried, volts=in_volts(raw_supply(design)), fed=fed)
 
 
 def _other_supplies(design: Design) -> Iterator[str]:
     """What the coupling's supply contacts carry, where it is not the voltage of this design."""
     contacts = [contact for flange in design.flanges for contact in flange.contacts]
-    carried = dict.fromkeys(_volts(c.carries) for c in contacts if c.kind == "supply")
-    yield from (volts for volts in carried if volts != _volts(_raw(design)))
+    carried = dict.fromkeys(in_volts(c.carries) for c in contacts if c.kind == "supply")
+    yield from (volts for volts in carried if volts != in_volts(raw_supply(design)))
 
 
 def _needs(design: Design) -> Iterator[str]:
@@ -80,9 +82,9 @@ def _needs(design: Design) -> Iterator[str]:
 
 def _boarded(design: Design, flange: Flange) -> Iterator[str]:
     """Sockets on wires, spring contacts, and the board alone on a bench supply."""
-    own = gripper_headers(design.auxiliary_boards)
+    own = own_cable(design)
     for header, cable in plugs(design):
-        joint = header in own and feeds_gripper(design)
+        joint = header in own.headers and not own.by_maker
         shared = _text("shared", header=header) if joint else ""
         how = pressed(design.cabling)
         yield _text("socketed", cable=cable, header=header, shared=shared, pressed=how)
@@ -103,13 +105,13 @@ def _built_in(design: Design, flange: Flange) -> Iterator[str]:
 
 def _tried(design: Design) -> str:
     """The flange's board alone, on a bench supply."""
-    raw, board = _raw(design), _flange(design)
-    points = [f"{_volts(net)} at the test point {net}" for net in _outputs(design)]
+    raw, board = raw_supply(design), _flange(design)
+    points = [f"{in_volts(net)} at the test point {net}" for net in _outputs(design)]
     signs = "".join(_text("lit", lit=lit) for lit in _lights(design))
     if board not in boards_of_later(design):
         diodes = [part for part in board.components if part.kind == TVS]
         signs += "".join(_text("cold", part=part) for part in diodes)
-    return _text("indicator", supply=_volts(raw), raw=raw, outputs=listed(points), signs=signs)
+    return _text("indicator", supply=in_volts(raw), raw=raw, outputs=listed(points), signs=signs)
 
 
 def _powered(design: Design) -> Iterator[str]:
@@ -122,7 +124,7 @@ def _powered(design: Design) -> Iterator[str]:
                 [f"{part.ref}.{number}" for number, net in part.nets if net == wanted]
                 for wanted in (found[-1], "GND")
             )
-            volts = _volts(found[-1])
+            volts = in_volts(found[-1])
             yield _text("powered", header=part.ref, volts=volts, plus=plus[0], minus=minus[-1])
             return
 
@@ -130,57 +132,13 @@ def _powered(design: Design) -> Iterator[str]:
 def _outputs(design: Design) -> list[str]:
     """Nets of test points behind the fuse that carry a supply, such as `"5V"`, the lowest last."""
     supplies = _flange(design).supplies
-    found = [net for net in _probed(design) if net in supplies and _SUPPLY.fullmatch(net)]
+    found = [net for net in probed(design) if net in supplies and _SUPPLY.fullmatch(net)]
     return sorted(found, key=lambda net: -float(net.removesuffix("V")))
 
 
 def _lights(design: Design) -> list[Indicator]:
     """The power LED of the flange's board; none without it."""
     return [lit for lit in design.electrical.indicators if lit.board == "flange"]
-
-
-def gripper_cable(design: Design) -> str:
-    """The choice of the gripper's cable: where its supply and lines are on the flange's board."""
-    board, pads, mount = _flange(design), _raw_pads(design), design.mount
-    most_a = _most_a(design, pads)
-    if pads and not feeds_gripper(design):
-        return _text("makers_cable", mount=mount, most_a=most_a)
-    headers = front_headers(board)
-    supply = _from_robot(design, pads) if pads else ""
-    own = [part.ref for part in headers if {net for _, net in part.nets} - {*board.supplies}]
-    lines = _text("lines", lines=listed(own)) if own else ""
-    drawn = _text("drawn", mount=mount, most_a=most_a) if pads and mount.supply_a else ""
-    return _text("gripper_cable", supply=supply or _text("behind_fuse"), lines=lines, drawn=drawn)
-
-
-def feeds_gripper(design: Design) -> bool:
-    """Whether the contacts of the headers carry what the gripper draws, as far as that is known."""
-    return design.mount.supply_a <= _most_a(design, _raw_pads(design))
-
-
-def _raw_pads(design: Design) -> list[str]:
-    """Contacts of the headers that have the robot's supply before the fuse."""
-    raw, headers = _raw(design), front_headers(_flange(design))
-    return [f"{part.ref}.{number}" for part in headers for number, net in part.nets if net == raw]
-
-
-def _most_a(design: Design, pads: list[str]) -> float:
-    return len(pads) * SLOT_MM2 * design.cabling.most_a_per_mm2
-
-
-def _from_robot(design: Design, pads: list[str]) -> str:
-    """The supply before the fuse, and how much its contacts carry."""
-    density, each = design.cabling.most_a_per_mm2, SLOT_MM2
-    return _text(
-        "from_robot",
-        pads=listed(pads),
-        volts=_volts(_raw(design)),
-        slot_mm2=each,
-        density=density,
-        each_a=each * density,
-        all_a=len(pads) * each * density,
-        slack_mm=design.cabling.slack_mm,
-    )
 
 
 def _contacts(design: Design) -> str:
@@ -194,7 +152,7 @@ def _contacts(design: Design) -> str:
 
 
 def _contact_rows(design: Design) -> Iterator[str]:
-    board = _flange(design)
+    board, own = _flange(design), own_cable(design)
     wires = [wire for cable in design.cabling.cables for wire in cable.wires]
     ends = {(w.end.connector, w.end.pin): w.number for w in wires if w.end.board == board.name}
     for part in front_headers(board):
@@ -202,30 +160,16 @@ def _contact_rows(design: Design) -> Iterator[str]:
         for net in nets:
             pins = [pin for pin, carried in part.nets if carried == net]
             found = [f"{ends[part.ref, p]} at {p}" for p in pins if (part.ref, p) in ends]
-            if net == "GND" or net.endswith(INPUT_END) or net not in board.supplies:
+            of_robot = net.endswith(INPUT_END) or net not in board.supplies
+            if (net == "GND" or of_robot) and not own.by_maker:
                 found.append("the gripper's")
             shown = ", ".join(found) or "none"
             yield f"| {part.ref} | {', '.join(pins)} | {as_written(net)} | {shown} |"
 
 
-def _raw(design: Design) -> str:
-    """Net of the contacts' supply before the fuse, such as `"24V_IN"`."""
-    return next(name for name in _probed(design) if name.endswith(INPUT_END))
-
-
-def _volts(raw: str) -> str:
-    """Voltage of the contacts' supply, such as `"24 V"`."""
-    return raw.removesuffix(INPUT_END).replace("V", " V")
-
-
 def _flange(design: Design) -> AuxiliaryBoard:
     """The flange's board."""
     return next(board for board in design.auxiliary_boards if board.name == "flange")
-
-
-def _probed(design: Design) -> list[str]:
-    """Nets of the test points on the flange's board."""
-    return [part.value for part in _flange(design).components if part.kind == "test point"]
 
 
 def _lengths(flange: Flange) -> str:

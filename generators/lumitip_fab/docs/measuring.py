@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from lumitip_fab.design import Design, Flange, Unsure
-from lumitip_fab.docs.flange import gripper_cable
+from lumitip_fab.docs.gripper_cable import gripper_cable
 from lumitip_fab.text import as_written, passage, table_of
 
 _GRIPPERS, _OTHERS = "grippers/texts.toml", "docs/measuring.toml"

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from lumitip_fab.design import Design, Holder
 from lumitip_fab.design.frames import gripper_to_tool
 from lumitip_fab.docs.cable_ways import cable_ways
-from lumitip_fab.docs.flange import feeds_gripper, plugs
+from lumitip_fab.docs.flange import plugs
 from lumitip_fab.docs.steps import numbered
 from lumitip_fab.text import listed, passage
 
@@ -91,7 +91,7 @@ def _finger_work(design: Design) -> Iterator[str]:
     yield from _supplied(design)
     if design.gauge_cards:
         yield _text("measured_fingers", thickness_mm=design.stack.thickness_mm)
-    own = _text("own_supply") * (bool(design.flanges) and not feeds_gripper(design))
+    own = _text("own_supply") * bool(design.flanges)
     yield _text("force_first", own=own, rated_n=design.strength.rated_force_n)
     yield _text("screwed_on", bolts=len(mount.bolt_u_mm), mount=mount)
     frames = design.stack, mount, design.closing, design.system

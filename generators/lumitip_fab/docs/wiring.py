@@ -5,7 +5,17 @@ import csv
 import io
 
 from lumitip_fab.design import Cable, Cabling, Design, Pack, Tie, Wire
-from lumitip_fab.design.cabling import COLOURS, STRIP_MM, THREAD_MM, awg, codes_of, named, outer_mm
+from lumitip_fab.design.cabling import (
+    COLOURS,
+    SLOT_MM,
+    SLOT_MM2,
+    STRIP_MM,
+    THREAD_MM,
+    awg,
+    codes_of,
+    named,
+    outer_mm,
+)
 from lumitip_fab.docs.diagram import diagram
 from lumitip_fab.docs.spec_circuit import pulled_up
 from lumitip_fab.docs.steps import WorkStep
@@ -14,9 +24,6 @@ from lumitip_fab.text import as_written, listed, passage
 
 _TEXTS = "docs/wiring.md"
 
-SLOT_MM, SLOT_MM2 = 1.25, 0.09
-"""Insulation and section, at most, of a wire in a socket for flat cable, whose slots are 1.27 mm
-apart and made for AWG 28 (assumed: the maker's drawing was not read)."""
 COLUMNS = (
     "wire",
     "signal",

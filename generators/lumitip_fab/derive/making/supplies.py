@@ -24,7 +24,8 @@ from lumitip_fab.design import (
     Stack,
 )
 from lumitip_fab.design.boards import GLUE_FILM_MM
-from lumitip_fab.design.cabling import gripper_headers, plugged_headers, supplied_headers
+from lumitip_fab.design.cabling import plugged_headers
+from lumitip_fab.design.gripper_cable import gripper_cable
 
 TAPE_MARGIN_MM = 5.0
 """Of the tape beyond a window, on each side."""
@@ -133,16 +134,19 @@ def _held(of: Assembled) -> Iterator[Used]:
 
 def _plugged(config: Input, of: Assembled) -> Iterator[Used]:
     """A mating connector for each header of the flange that a cable ends at, and the gripper's own
-    cable, which starts there: its other plug and its current are the gripper's."""
+    cable: from there, where its other plug and its current are the gripper's, or its maker's."""
     plugs = plugged_headers(of.cabling.cables, of.auxiliary_boards)
-    lines = gripper_headers(of.auxiliary_boards)
+    own = gripper_cable(of.auxiliary_boards, of.cabling.cables, of.mount.supply_a)
+    lines = () if own.by_maker else own.headers
     headers, mate = sorted({*plugs, *lines}), config.parts.flange.header.mate
     if mate and headers:
         yield Used(mate, f"plug at {', '.join(headers)} of the flange", len(headers), "piece")
+    if own.by_maker:
+        yield Used("gripper cable by maker", "past the flange, to its own supply", 1, "piece")
     if lines:
         where = f"from {', '.join(lines)} of the flange: its maker's, or wires for its current"
         yield Used("gripper cable", where, 1, "piece")
-    if supplied_headers(of.auxiliary_boards):
+    if own.feeds:
         yield Used("gripper fuse", "supply wire of the gripper's cable", 1, "piece")
 
 

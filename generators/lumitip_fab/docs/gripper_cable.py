@@ -1,0 +1,79 @@
+"""The manual's choice of the gripper's cable: its maker's, or one from the flange's headers."""
+
+from lumitip_fab.design import Design
+from lumitip_fab.design.cabling import INPUT_END, SLOT_A, SLOT_MM2, front_headers
+from lumitip_fab.design.gripper_cable import GripperCable
+from lumitip_fab.design.gripper_cable import gripper_cable as cable_of
+from lumitip_fab.text import listed, passage
+
+
+def own_cable(design: Design) -> GripperCable:
+    """What the flange's headers have for the gripper."""
+    return cable_of(design.auxiliary_boards, design.cabling.cables, design.mount.supply_a)
+
+
+def gripper_cable(design: Design) -> str:
+    """The choice, where the board of a flange lies between the gripper's contacts and the
+    robot's."""
+    own, mount = own_cable(design), design.mount
+    if own.by_maker:
+        return _text("makers_cable", mount=mount, most_a=own.most_a)
+    headers = _with_lines(design)
+    lines = _text("lines", lines=listed(headers)) if headers else ""
+    drawn = _text("drawn", mount=mount, most_a=own.most_a) if own.feeds and mount.supply_a else ""
+    return _text("gripper_cable", supply=_supply(design, own), lines=lines, drawn=drawn)
+
+
+def in_the_list(design: Design) -> str:
+    """The cable that the list of parts has for the gripper."""
+    own = own_cable(design)
+    if own.by_maker:
+        return _text("listed_makers")
+    return _text("listed_free", fused=_text("listed_fuse") * own.feeds)
+
+
+def _with_lines(design: Design) -> list[str]:
+    """Headers with a line of the robot that is no supply."""
+    return [
+        part.ref
+        for board in design.auxiliary_boards
+        if board.name == "flange"
+        for part in front_headers(board)
+        if {net for _, net in part.nets} - {*board.supplies}
+    ]
+
+
+def _supply(design: Design, own: GripperCable) -> str:
+    """The supply before the fuse, and how much its contacts carry; or that there is none."""
+    if not own.fed_from:
+        return _text("behind_fuse")
+    return _text(
+        "from_robot",
+        pads=listed([*own.fed_from]),
+        volts=in_volts(raw_supply(design)),
+        slot_mm2=SLOT_MM2,
+        each_a=SLOT_A,
+        all_a=own.most_a,
+        slack_mm=design.cabling.slack_mm,
+    )
+
+
+def raw_supply(design: Design) -> str:
+    """Net of the contacts' supply before the fuse, such as `"24V_IN"`."""
+    return next(name for name in probed(design) if name.endswith(INPUT_END))
+
+
+def in_volts(raw: str) -> str:
+    """Voltage of the contacts' supply, such as `"24 V"`."""
+    return raw.removesuffix(INPUT_END).replace("V", " V")
+
+
+def probed(design: Design) -> list[str]:
+    """Nets of the test points on the flange's board."""
+    board = next(board for board in design.auxiliary_boards if board.name == "flange")
+    return [part.value for part in board.components if part.kind == "test point"]
+
+
+def _text(name: str, /, **values: object) -> str:
+    """A passage of the manual with its values."""
+    return passage("docs/chapters.md", name).format(**values)
