@@ -47,7 +47,8 @@ def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
     """Pictures other than the file of their name, and those that are missing."""
     names = [finger.name for finger in design.fingers]
     boards = [*names, *(auxiliary.name for auxiliary in design.auxiliary_boards)]
-    wanted = {"assembly/receiver_exploded.svg", "assembly/system.svg", "wiring/wiring.svg"}
+    wanted = {"assembly/receiver_exploded.svg", "wiring/wiring.svg"}
+    wanted.add("manual/mounted.svg" if design.system.holders else "assembly/system.svg")
     wanted |= {f"manual/{name}_mask.svg" for name in names}
     bench = ("measured", "lengths", "plate", "facing", "board", "mould", "drop")
     work = (*bench, "cable", "filled", "lowered", "clamped", "lifted", "card", "skin")

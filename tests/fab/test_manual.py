@@ -54,7 +54,7 @@ EDITS = [
     ("<td>warm-up</td>", "<td>cool-down</td>", {"figures", "pdf"}),
     ("<code>fit/fit_plate.3mf</code>", "<code>fit/plate.3mf</code>", {"files", "pdf"}),
     ('data-file="wiring/wiring.svg"', 'data-file="wiring/cables.svg"', {"drawings"}),
-    ('data-file="assembly/system.svg"', 'data-file="assembly/robot.svg"', {"drawings"}),
+    ('data-file="manual/mounted.svg"', 'data-file="assembly/robot.svg"', {"drawings"}),
     ("2.53 g", "3.53 g", {"amounts", "pdf"}),
     ("<td>W2.3</td>", "<td>W2.4</td>", {"wires"}),
     ("<td>used by one pair of fingers</td>", "<td>altogether</td>", {"parts", "pdf"}),

@@ -47,6 +47,23 @@ def test_heights_and_steps_are_those_of_the_bodies(
     assert off_mm(built(preset)) <= WITHIN_MM
 
 
+@pytest.mark.parametrize("preset", ["published", pytest.param("flex", marks=pytest.mark.slow)])
+def test_the_holder_s_height_on_the_gripper_is_that_of_the_bodies(
+    preset: str, built: Callable[[str], Path]
+) -> None:
+    folder = built(preset)
+    design, nodes = (
+        read_design(folder / "design.json"),
+        read_scene(folder / "assembly/system.glb").nodes,
+    )
+    (holder,) = design.system.holders
+    low = [float(nodes[n].in_scene_mm[:, 2].min()) for n in ("gripper.envelope", f"{holder}.tray")]
+    words = [text for text, _ in read_drawing(folder / "manual/mounted.svg").words]
+    assert f"{low[1] - low[0]:.0f} mm" in words
+    html = " ".join((folder / "manual/manual.html").read_text(encoding="utf-8").split())
+    assert f"Clip the arms round the gripper, {low[1] - low[0]:.0f} mm from the flange" in html
+
+
 @pytest.mark.parametrize(
     ("before", "after"),
     [

@@ -188,6 +188,11 @@ class System:
     holder_z_mm: float
     """Middle of those."""
 
+    def holder_edge_mm(self, length_mm: float) -> float:
+        """From the plane that the gripper stands on to the nearer edge of a holder that is so long
+        along the tool axis."""
+        return self.holder_z_mm - length_mm / 2 - self.gripper_z_mm
+
     @property
     def body_is_known(self) -> bool:
         """Whether parts that go round the body are printed without a measurement."""

@@ -10,7 +10,13 @@ take part. Heads are the catalogue's, by ISO 4762.
 import math
 from dataclasses import dataclass
 
-from lumitip_fab.design.mount import Mount
+from lumitip_fab.design.mount import Fastener, Mount
+
+NUT_FACTOR = 0.2
+"""Torque of a bolt against its pull and thread, dry steel (Shigley, Mechanical Engineering Design,
+torque factors K)."""
+PRELOAD_SHARE = 0.5
+"""Of what plastic under a head bears, for the pre-load: the rest is the load's."""
 
 
 @dataclass(frozen=True)
@@ -76,3 +82,16 @@ def designed_seat(mount: Mount, head_mm: float, pull: float) -> Seated:
     within = (wide**2 - hole**2) / (head_mm**2 - hole**2)
     over_mm2 = math.pi * wide * (mount.land_mm - mount.pin_depth_mm)
     return Seated(pull, pull / area, pull * max(1 / round_mm2, within / over_mm2))
+
+
+def torque_nm(bolt: Fastener, hole_mm: float, bearing_mpa: float) -> float:
+    """Torque that a bolt is tightened with, its head or what it clamps on plastic.
+
+    Args:
+        bolt: its thread and head.
+        hole_mm: through the plastic.
+        bearing_mpa: what the plastic bears when it is pressed.
+    """
+    area_mm2 = math.pi / 4 * (bolt.cap_head_mm**2 - hole_mm**2)
+    preload_n = PRELOAD_SHARE * bearing_mpa * area_mm2
+    return NUT_FACTOR * preload_n * bolt.thread_mm / 1000

@@ -8,6 +8,7 @@ from lumitip_fab.design import AuxiliaryBoard, Design, Flange
 from lumitip_fab.design.cabling import INPUT_END, front_headers, plugged_headers
 from lumitip_fab.design.electrical import Indicator
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
+from lumitip_fab.docs.bolts import tightened
 from lumitip_fab.docs.gripper_cable import in_volts, own_cable, probed, raw_supply
 from lumitip_fab.docs.protection import TVS, boards_of_later, protection_note
 from lumitip_fab.docs.steps import numbered
@@ -99,7 +100,8 @@ def _built_in(design: Design, flange: Flange) -> Iterator[str]:
     wait = f"for {hard_h:g} h" if hard_h else "for as long as its label says"
     out_mm = flange.pin_length_mm - flange.pin_depth_mm
     yield _text("closed", flange=flange, glue=design.strength.glue, wait=wait, out_mm=out_mm)
-    yield _text("bolted", flange=flange, bolts=len(flange.bolts))
+    tight = tightened(design, flange.bolt, flange.bolt_hole_mm, f"flange/{flange.name}")
+    yield _text("bolted", flange=flange, bolts=len(flange.bolts), tight=tight)
     yield from _powered(design)
 
 

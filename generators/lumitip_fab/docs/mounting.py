@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from lumitip_fab.design import Design, Holder
 from lumitip_fab.design.frames import gripper_to_tool
+from lumitip_fab.docs.bolts import tightened
 from lumitip_fab.docs.cable_ways import cable_ways
 from lumitip_fab.docs.flange import plugs
 from lumitip_fab.docs.steps import numbered
@@ -17,7 +18,7 @@ def mounting_steps(design: Design) -> Iterator[str]:
     """The controller's board and the gripper, then the fingers."""
     yield _text(
         "gripper_step",
-        held=_text("held") * len(design.holders),
+        pictures="\n".join(_pictures(design)),
         title="Mount the controller" if design.holders else "Try the gripper",
         work=numbered(_gripper_work(design)),
         needs=", ".join(["the keys and screwdrivers", *_gripper_needs(design)]),
@@ -40,6 +41,13 @@ def mounting_steps(design: Design) -> Iterator[str]:
         ways=cable_ways(design),
         closed=_text("touch_first" if design.mount.tilt_deg else "parallel"),
     )
+
+
+def _pictures(design: Design) -> Iterator[str]:
+    """The holder where it is on the gripper, and its ties."""
+    yield _text("where_held" if design.system.holders else "not_held")
+    if design.holders:
+        yield _text("held")
 
 
 def _gripper_needs(design: Design) -> list[str]:
@@ -70,6 +78,8 @@ def _gripper_work(design: Design) -> Iterator[str]:
             robot=listed(_to_robot(design, holder)),
             fingers=_to_fingers(design),
             loop_mm=holder.tie_loop_mm,
+            edge_mm=design.system.holder_edge_mm(holder.outer.length_mm),
+            face="the flange" if design.flanges else "where the gripper stands",
         )
     if not design.holders and any(board.name == "breakout" for board in design.auxiliary_boards):
         yield _text("beside_gripper", mount=mount)
@@ -93,7 +103,9 @@ def _finger_work(design: Design) -> Iterator[str]:
         yield _text("measured_fingers", thickness_mm=design.stack.thickness_mm)
     own = _text("own_supply") * bool(design.flanges)
     yield _text("force_first", own=own, rated_n=design.strength.rated_force_n)
-    yield _text("screwed_on", bolts=len(mount.bolt_u_mm), mount=mount)
+    part = "interface" if design.interfaces else "backing"
+    tight = tightened(design, mount.bolt, mount.bolt_hole_mm, part, again=bool(design.flanges))
+    yield _text("screwed_on", bolts=len(mount.bolt_u_mm), mount=mount, tight=tight)
     frames = design.stack, mount, design.closing, design.system
     face = "the robot's flange" if design.flanges else "the gripper's own face"
     yield _text("tool", tool_mm=float(gripper_to_tool(*frames)[2, 3]), face=face)

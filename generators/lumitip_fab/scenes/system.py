@@ -12,6 +12,7 @@ from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Flange, Holder, S
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.pipeline.artefact import Artefact, Files
 from lumitip_fab.scenes.glb import Body, Group, colour_of, glb
+from lumitip_fab.scenes.mounted_view import mounted_view
 from lumitip_fab.scenes.system_view import system_view
 
 SECTIONS = 96
@@ -111,7 +112,15 @@ def system_files(design: Design, files: Files) -> tuple[Artefact, ...]:
     tcp_mm = float(to_tool[2, 3])
     extras = {"opening_mm": float(scene.metadata["opening_mm"]), "tcp_mm": tcp_mm}
     drawing = system_view(groups, design.flanges, mount, system, tcp_mm)
+    mounted = [
+        Artefact(
+            "manual/mounted.svg", mounted_view(groups, holder, mount, system).encode(), frame=""
+        )
+        for holder in design.holders
+        if holder.name in system.holders
+    ]
     return (
+        *mounted,
         Artefact("assembly/system.glb", glb("system", tuple(groups), extras), _M_TO_MM, "tool"),
         Artefact("assembly/system.svg", drawing.encode(), frame=""),
     )

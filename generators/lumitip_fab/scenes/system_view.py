@@ -51,16 +51,16 @@ def system_view(
         Drawn(group.name, body.name, _pulled(body.mesh, group, shifts[group.name]))
         for group in groups
         for body in group.bodies
-        if _shown(group.name, body.name)
+        if shown(group.name, body.name)
     ]
     meshes = [body.mesh for body in drawn]
     lines = visible_lines(meshes, eye)
-    order = _painted(drawn, eye)
+    order = painted(drawn, eye)
     _axis(sheet, eye, drawn, shifts)
     for k in order:
         name = drawn[k].name
         with sheet.group(name):
-            sheet.area(silhouette(meshes[k], eye), "body", _tint(name))
+            sheet.area(silhouette(meshes[k], eye), "body", tint(name))
     for k in order:
         sheet.lines(lines[k], "line")
     at = {body.name: eye.seen(body.mesh.points_mm) for body in drawn}
@@ -69,16 +69,18 @@ def system_view(
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
 
 
-def _shown(group: str, body: str) -> bool:
+def shown(group: str, body: str) -> bool:
+    """Whether a body is drawn: of a finger, its layers are."""
     return group not in ("emitter", "receiver") or body.rpartition(".")[2] in LAYERS
 
 
-def _tint(name: str) -> str:
+def tint(name: str) -> str:
+    """Colour of a body by its name."""
     first, _, last = name.partition(".")
     return tints()[last] if last in tints() else tints()[first]
 
 
-def _painted(drawn: list[Drawn], eye: View) -> list[int]:
+def painted(drawn: list[Drawn], eye: View) -> list[int]:
     """Numbers of the bodies from the farthest to the nearest: groups lie apart, and of the emitter
     one sees the back."""
     depths = {
