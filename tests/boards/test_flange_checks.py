@@ -31,6 +31,13 @@ def supply_narrow(text: str) -> str:
     return once(text, r"(\(segment .*?\(width )0\.5\)", r"\g<1>0.4)")
 
 
+def supply_of_the_gripper_narrow(text: str) -> str:
+    """A track that the gripper's current passes."""
+    net = re.search(r'\(net (\d+) "[^"]*_IN"\)', text)
+    assert net
+    return once(text, rf"(\(segment [^\n]*?\(width )0\.5(\)[^\n]*\(net {net[1]}\))", r"\g<1>0.2\2")
+
+
 def ground_under_the_regulator_missing(text: str) -> str:
     """The pour of the back, which is of no net any more."""
     zone = text.index("(zone", text.index("(zone") + 1)
@@ -139,6 +146,7 @@ DAMAGES: dict[Damage, set[str]] = {
         "joined",
     },
     supply_narrow: {"supply_width"},
+    supply_of_the_gripper_narrow: {"supply_width", "warming"},
     ground_under_the_regulator_missing: {"hot_loop_ground"},
     way_to_the_capacitor_missing: {"hot_loop_input", "open", "apart"},
 }

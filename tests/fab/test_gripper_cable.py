@@ -3,9 +3,12 @@
 from collections.abc import Callable
 from dataclasses import replace
 
+import pytest
+
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
+from lumitip_fab.design.warming import MOST_K, bearable_a, warming_k
 from lumitip_fab.docs.gripper_cable import own_cable
 from mounting_text import steps
 
@@ -19,20 +22,19 @@ def drawing(design: Design, supply_a: float) -> Design:
 
 def test_a_gripper_that_draws_more_gets_its_makers_cable(written: Written) -> None:
     step = steps(drawing(written(), 2.5))
-    assert "takes up to 2.5 A" in step and "board carry 2 A" in step
+    assert "takes up to 2.5 A" in step and "board carry 1.7 A" in step
     assert "use the cable that its maker has for robots without such a coupling" in step
     assert "put a fuse of the gripper's own rating" not in step and "the gripper's |" not in step
     assert "has its wires in the same socket" not in step
-    assert "takes up to 1 A by its entry in `grippers.toml`, and the contacts here carry 2 A" in (
+    assert "takes up to 1 A by its entry in `grippers.toml`, and the contacts here carry 1.7 A" in (
         steps(written())
-    ), "two contacts of 1 A each, and as many of ground"
+    )
 
 
 def test_contacts_of_ground_limit_what_the_headers_carry(written: Written) -> None:
     supplies = ("REGULATED", "SUPPLY", *("SUPPLY_IN",) * 4, "GND")
-    own = own_cable(written({"flange.headers": (LINES, supplies)}))
-    assert own.fed_from == ("J3.5", "J3.6", "J3.7", "J3.8", "J3.9", "J3.10", "J3.11", "J3.12")
-    assert own.most_a == 3, "four contacts of GND, one of them with a wire of the fingers"
+    own = own_cable(written({"flange.headers": (("CASING", *LINES[1:]), supplies)}))
+    assert len(own.fed_from) == 8 and own.most_a == 1, "a wire of the fingers has the other GND"
 
 
 def test_what_a_gripper_s_cable_needs_is_bought(inputs: dict[str, Input]) -> None:
@@ -48,8 +50,8 @@ def test_what_a_gripper_s_cable_needs_is_bought(inputs: dict[str, Input]) -> Non
         }
 
     mate = "box header 2x7 mate"
-    assert bought(None) == bought(2.0) == {mate: 2, "gripper cable": 1, "gripper fuse": 1}
-    assert bought(2.1) == {mate: 1, "gripper cable by maker": 1}
+    assert bought(None) == bought(1.7) == {mate: 2, "gripper cable": 1, "gripper fuse": 1}
+    assert bought(1.8) == {mate: 1, "gripper cable by maker": 1}
 
 
 def test_the_gripper_gets_the_supply_before_the_fuse(written: Written) -> None:
@@ -63,7 +65,9 @@ def test_the_gripper_gets_the_supply_before_the_fuse(written: Written) -> None:
 def test_the_gripper_s_own_cable_has_a_fuse_and_a_limit(written: Written) -> None:
     step = steps(written())
     assert "0.09 mm² (AWG 28) at most, which carries 1 A there" in step
-    assert "together with as many of GND they carry 2 A" in step
+    assert (
+        "together, with as many of GND and the tracks that lead to them, they carry 1.7 A" in step
+    )
     assert "a fuse of the gripper's own rating into the wire that starts there" in step
     assert "40 mm longer than their way" in step
 
@@ -73,6 +77,18 @@ def test_another_supply_is_named_by_its_voltage(written: Written) -> None:
     assert "Its 12 V are on J3.7 and J3.8" in step and "Its 24 V" not in step
     asked = "entry says 24 V for the supply contact, and this flange takes 12 V."
     assert asked in step and "for the supply contact" not in steps(written())
+
+
+@pytest.mark.parametrize(("width_mm", "by_maker"), [(0.25, True), (0.26, False)])
+def test_tracks_limit_what_the_headers_carry(
+    width_mm: float, by_maker: bool, written: Written
+) -> None:
+    """By IPC-2221 1 A warms a track of 0.3 mm and 35 µm by 10 K."""
+    assert bearable_a(0.3, 35.0, 10.0) == pytest.approx(1.0, rel=0.002)
+    assert warming_k(1.0, 0.3, 35.0) == pytest.approx(10.0, rel=0.005)
+    own = own_cable(written({"board.supply_track_mm": width_mm}))
+    assert own.by_maker == by_maker and own.supply_a == 1
+    assert own.most_a <= bearable_a(width_mm, 35.0, MOST_K) - 0.19 < own.most_a + 0.1
 
 
 LINES = ("GND", "CASING", "Von", "485+", "485-", "3V3_out", "485GND")

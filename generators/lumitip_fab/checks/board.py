@@ -15,6 +15,7 @@ from lumitip_fab.checks.board_circuit import (
     measure_contact_map,
     measure_passed_on,
 )
+from lumitip_fab.checks.board_current import measure_warming
 from lumitip_fab.checks.board_finger import measure_cell_prints, measure_cells, measure_flexible
 from lumitip_fab.checks.board_headers import measure_shrouds, measure_sockets
 from lumitip_fab.checks.board_indicator import measure_bulk, measure_indicator
@@ -248,6 +249,7 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     board_copper.measure_spokes,
     board_noise.measure_bypass_vias,
     board_copper.measure_supplies,
+    measure_warming,
     board_copper.measure_hot_loop,
     board_noise.measure_crystal,
     board_copper.measure_keep_outs,

@@ -1,6 +1,7 @@
 """The manual's choice of the gripper's cable: its maker's, or one from the flange's headers."""
 
 from lumitip_fab.design import Design
+from lumitip_fab.design.board_rules import rules_of
 from lumitip_fab.design.cabling import INPUT_END, SLOT_A, SLOT_MM2, front_headers
 from lumitip_fab.design.gripper_cable import GripperCable
 from lumitip_fab.design.gripper_cable import gripper_cable as cable_of
@@ -9,7 +10,9 @@ from lumitip_fab.text import listed, passage
 
 def own_cable(design: Design) -> GripperCable:
     """What the flange's headers have for the gripper."""
-    return cable_of(design.auxiliary_boards, design.cabling.cables, design.mount.supply_a)
+    track_mm = rules_of(design, "flange").supply_track_mm
+    cables, supply_a = design.cabling.cables, design.mount.supply_a
+    return cable_of(design.auxiliary_boards, cables, supply_a, track_mm)
 
 
 def gripper_cable(design: Design) -> str:

@@ -23,6 +23,7 @@ from lumitip_fab.design import (
     Point,
     Stack,
 )
+from lumitip_fab.design.board_rules import COMMON_MM
 from lumitip_fab.design.boards import GLUE_FILM_MM
 from lumitip_fab.design.cabling import plugged_headers
 from lumitip_fab.design.gripper_cable import gripper_cable
@@ -136,7 +137,8 @@ def _plugged(config: Input, of: Assembled) -> Iterator[Used]:
     """A mating connector for each header of the flange that a cable ends at, and the gripper's own
     cable: from there, where its other plug and its current are the gripper's, or its maker's."""
     plugs = plugged_headers(of.cabling.cables, of.auxiliary_boards)
-    own = gripper_cable(of.auxiliary_boards, of.cabling.cables, of.mount.supply_a)
+    track_mm = max(config.parameters.board.supply_track_mm, COMMON_MM["track_mm"])
+    own = gripper_cable(of.auxiliary_boards, of.cabling.cables, of.mount.supply_a, track_mm)
     lines = () if own.by_maker else own.headers
     headers, mate = sorted({*plugs, *lines}), config.parts.flange.header.mate
     if mate and headers:
