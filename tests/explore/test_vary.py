@@ -26,6 +26,7 @@ def config(design_dir: Path) -> Input:
         ("grid.columns=[[5, 4, 5], [4, 5]]", ((5, 4, 5), (4, 5))),
         ("receiver.multiplexer=74HC4051PW,74HC4067PW", ("74HC4051PW", "74HC4067PW")),
         ('mask.hole_shape="circle"', ("circle",)),
+        ("backing.flare_mm=auto,2.0", ("auto", 2.0)),
     ],
 )
 def test_values_of_a_field(config: Input, text: str, values: tuple[object, ...]) -> None:
@@ -41,6 +42,18 @@ def test_the_last_field_varies_fastest(config: Input) -> None:
     parameters = changed(config, (("grid.pitch_mm", 5), ("mask.hole_mm", 2))).parameters
     assert (parameters.grid.pitch_mm, parameters.mask.hole_mm) == (5, 2)
     assert parameters.grid.columns == config.parameters.grid.columns
+
+
+def test_an_automatic_value_is_left_to_the_derivation(config: Input) -> None:
+    field, start = "backing.flare_mm", config.parameters.backing.flare_mm
+    written = changed(config, ((field, 2.0),))
+    assert (written.value(field), field in written.automatic) == (2.0, False)
+    again = changed(written, ((field, "auto"),))
+    assert (again.value(field), field in again.automatic) == (start, True)
+    (axis,) = axes(config, ["emitter.led=auto,VSMY1850"], points=2)
+    assert axis.values == ("auto", "VSMY1850")
+    with pytest.raises(InputError, match=r"grid\.pitch_mm is 'auto'"):
+        axes(config, ["grid.pitch_mm=auto,5"], points=2)
 
 
 def test_every_fault_of_every_text_is_told_at_once(config: Input) -> None:

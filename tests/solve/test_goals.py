@@ -58,6 +58,21 @@ def test_the_examples_are_valid(name: str, base: str) -> None:
     assert read_goals(example).base.parameters.name == base
 
 
+def test_fixed_and_varied_values_may_be_automatic(goals: Path) -> None:
+    text = goals.read_text().replace(
+        "silicone_mm = 2.0", 'silicone_mm = 2.0\nreceiver.load = "auto"'
+    )
+    text = text.replace(
+        '["hexagon", "circle"]', '["hexagon", "circle"]\nboard.track_mm = ["auto", 0.15]'
+    )
+    goals.write_text(text)
+    task = read_goals(goals)
+    assert "receiver.load" in task.base.automatic - task.written.automatic
+    left, fine = (task.design((("board.track_mm", value),)) for value in ("auto", 0.15))
+    assert "board.track_mm" in left.automatic - fine.automatic
+    assert (left.parameters.board.track_mm, fine.parameters.board.track_mm) == (0.2, 0.15)
+
+
 FAULTS = {
     ("edge_mm = 0.1", "edge_mm = 1.5"): (3, "less than 1 is allowed"),
     ("edge_mm = 0.1", "gaps_mm = [2.0]"): (2, "goals is without an error"),

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from lumitip_fab.config.automatic import AUTO, automatic_fields
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.messages import problems_of, unknown_name
 from lumitip_fab.config.parameters import Parameters
@@ -81,18 +82,24 @@ def changed(config: Input, changes: Changes, keep_size: bool = False) -> Input:
 
     Args:
         config: the file.
-        changes: fields and their values.
+        changes: fields and their values; `"auto"` of a field that may be chosen.
         keep_size: whether the grid gets as many columns and rows as keep its size when its pitch
             changes.
     """
     table = config.parameters.model_dump()
+    left = {field for field, value in changes if _is_automatic(field, value)}
     for field, value in changes:
-        _set(table, field, value)
+        _set(table, field, automatic_fields()[field].start if field in left else value)
     if keep_size:
         grid = config.parameters.grid
         table["grid"]["columns"] = same_size(grid.columns, grid.pitch_mm, table["grid"]["pitch_mm"])
-    automatic = config.automatic - {field for field, _ in changes}
+    automatic = config.automatic - {field for field, _ in changes} | left
     return replace(config, parameters=Parameters.model_validate(table), automatic=automatic)
+
+
+def _is_automatic(field: str, value: Any) -> bool:
+    """Whether the value is left to the derivation."""
+    return bool(value == AUTO) and field in automatic_fields()
 
 
 def not_allowed(config: Input, axis: Axis) -> list[Problem]:
@@ -104,6 +111,8 @@ def not_allowed(config: Input, axis: Axis) -> list[Problem]:
         return config.sources[0]
 
     for value in axis.values:
+        if _is_automatic(axis.field, value):
+            continue
         if kind is not None:
             names = names_for(axis.field, config.catalogue)
             if value not in names:
