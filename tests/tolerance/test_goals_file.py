@@ -1,6 +1,7 @@
 """Yield against the goals of a goals file: its gaps and cables, and what does not fit together."""
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,8 @@ import pytest
 
 from lumitip.twin import Model
 from lumitip_fab.cli import main
+from lumitip_fab.config.load import load
+from lumitip_fab.derive import derive
 from lumitip_fab.derive.auto.resolve import Resolved
 from lumitip_fab.derive.making.tolerances import spreads
 from lumitip_fab.tolerance.bench import COLUMNS, Case, bench, errors_over
@@ -49,6 +52,27 @@ def test_a_study_tries_the_gaps_and_cables_of_a_goals_file(
     assert [grasp["gap_mm"] for grasp in found["grasps"]] == [2.0, 4.0]
     assert "fingerprint" not in found, "no manual quotes the shift for these goals"
     assert found["pose_estimator"]["frames"] == 10 * 4 * (2 + 3)
+
+
+@pytest.mark.slow
+def test_a_dim_design_is_tried_with_its_exposure(
+    design_dir: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Noise is a larger share of less light."""
+    design = derive(load(design_dir / "fingertip.toml"))
+    current_ma, ohm = float(design.wiring.current_ma[0]), design.layout.optics.pull_up_ohm
+    dim = Path(shutil.copytree(design_dir, tmp_path / "design")) / "dim.toml"
+    goals, errors_mm = goals_file(tmp_path, design_dir), {}
+    for share in (1.0, 0.25):
+        text = f'extends = "fingertip.toml"\n[emitter]\ncurrent_ma = {share * current_ma:.3f}\n'
+        dim.write_text(f"{text}[receiver]\npull_up_ohm = {ohm:g}\n", encoding="utf-8")
+        command = ["tolerance", str(dim), "--goals", str(goals), "--out", str(tmp_path), *FEW]
+        assert main(command) == 0
+        assert f"Exposure: {share:.2f} times that of" in capsys.readouterr().out
+        found = json.loads((tmp_path / "tolerance.json").read_text(encoding="utf-8"))
+        assert found["exposure"] == pytest.approx(share, abs=0.01)
+        errors_mm[share] = found["columns"]["after self-calibration"]["edge_mm"]["50"]
+    assert errors_mm[0.25] > errors_mm[1.0]
 
 
 @pytest.mark.slow

@@ -4,14 +4,16 @@ import argparse
 import json
 import math
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 
 from lumitip_fab.cli.screen import ERR, OUT
 from lumitip_fab.config.load import load
 from lumitip_fab.config.messages import shown_path
-from lumitip_fab.derive import resolve
+from lumitip_fab.derive import Resolved, resolve
 from lumitip_fab.errors import InputError, Problem
 from lumitip_fab.solve.goals import Targets, read_goals
+from lumitip_fab.solve.judge import MOST_EXPOSURE, exposure_of
 from lumitip_fab.tolerance import report
 from lumitip_fab.tolerance.options import Goals, Grasp, Options
 from lumitip_fab.tolerance.study import study
@@ -23,6 +25,8 @@ def run(options: argparse.Namespace) -> int:
     if options.out:
         report.prepare(options.out)
     resolved = resolve(load(options.file))
+    if options.goals:
+        asked = replace(asked, exposure=_exposure(options, resolved))
     silent = options.quiet or options.json
     with nullcontext() if silent else ERR.status("building and trying fingers …"):
         found = study(resolved.config, resolved.design.layout, asked)
@@ -34,6 +38,23 @@ def run(options: argparse.Namespace) -> int:
         if written:
             OUT.print("wrote " + ", ".join(map(str, written)), soft_wrap=True)
     return 0
+
+
+def _exposure(options: argparse.Namespace, resolved: Resolved) -> float | None:
+    """Exposure of the file against the base of the goals file.
+
+    Raises:
+        InputError: if free cells saturate, as a search refuses it.
+    """
+    exposure = exposure_of(read_goals(options.goals), resolved)
+    if exposure is not None and exposure > MOST_EXPOSURE:
+        text = (
+            f"has {exposure:.2f} times the LED current times pull-up of the base of "
+            f"{shown_path(options.goals)}, which saturates free cells; at most {MOST_EXPOSURE:g} "
+            "times is tried. Lower emitter.current_ma or receiver.pull_up_ohm."
+        )
+        raise InputError([Problem(shown_path(options.file), 0, "", text)])
+    return exposure
 
 
 def _asked(options: argparse.Namespace) -> Options:

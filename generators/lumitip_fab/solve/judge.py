@@ -8,7 +8,7 @@ import numpy as np
 from lumitip.estimation.estimate import LEAST_CELLS
 from lumitip.twin import Model
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive import resolve
+from lumitip_fab.derive import Resolved, resolve
 from lumitip_fab.design import Design
 from lumitip_fab.errors import InputError
 from lumitip_fab.explore.evaluate import Record, cost, key_of, rounded
@@ -82,6 +82,20 @@ class Job:
         prices, code = config.catalogue.prices, code_hash("explore", "solve")
         key = key_of(config, prices, task.targets.model_dump(), reference.drive, code)
         return cls(config, changes, task.targets, reference, key)
+
+
+def exposure_of(task: Task, resolved: Resolved) -> float | None:
+    """Exposure of a design against the reference of a task, see `drive`; `None` where it has other
+    LEDs or photodetectors, whose light is not known.
+
+    Raises:
+        InputError: if the task's base is refused.
+    """
+    reference = Reference.of(task)
+    known = resolve(task.base if reference.with_fixed else task.written).config
+    if any(known.value(name) != resolved.config.value(name) for name in WITHOUT_LIGHT):
+        return None
+    return drive(resolved.design) / reference.drive
 
 
 def judge(job: Job) -> Record:

@@ -1,6 +1,6 @@
 """Errors of many built fingers: their frames, and the estimates of these, as numbers by finger."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -68,6 +68,9 @@ class Bench:
         self._case, self._layout, self._model = case, case.layout, case.model
         self._rays = _rays(case)
         self._empty = Twin(case.layout, case.model).empty
+        usual = Twin(case.layout, replace(case.model, gain=Model.gain)).empty
+        self._coarse = usual / self._empty
+        """How much larger noise and steps are in the light of this exposure, by cell."""
         self.lines = {"edge": lines(case, "edge", case.poses, number)} if case.edges else {}
         self.lines |= {
             f"cable {diameter_mm:g} mm": lines(case, "cable", case.poses, number, diameter_mm)
@@ -160,9 +163,15 @@ class Bench:
         values = {}
         for name, of in lines.items():
             read = values_of_drive(light.shares(of) * drive * pair.drift, self._model)
-            noisy = (read * (FULL / by) + self._noise[name] for by in (self._empty, empty))
-            values[name] = Frames(*(np.floor(np.clip(one, 0.0, FULL)) for one in noisy))
+            noise = self._coarse * self._noise[name]
+            noisy = (read * (FULL / by) + noise for by in (self._empty, empty))
+            values[name] = Frames(*(self._codes(one) for one in noisy))
         return values
+
+    def _codes(self, values: Floats) -> Floats:
+        """Whole steps of the voltage."""
+        steps = np.floor(np.clip(values, 0.0, FULL) / self._coarse)
+        return np.asarray(steps * self._coarse)
 
 
 def _rms(missed: list[Floats], fingers: int) -> Floats:

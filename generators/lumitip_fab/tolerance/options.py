@@ -59,6 +59,9 @@ class Options:
     seed: int = 0
     file: str = ""
     """The goals file, if goals and grasps are of one."""
+    exposure: float | None = 1.0
+    """LED current times pull-up, relative to the base of the goals file; `None` if it is not
+    known, and then 1 is tried."""
 
     def __post_init__(self) -> None:
         limits = [

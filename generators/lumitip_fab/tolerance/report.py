@@ -61,6 +61,8 @@ def print_tables(study: dict[str, Any], console: Console) -> None:
         "rms over their poses.",
         soft_wrap=True,
     )
+    if "exposure" in study:
+        console.print(_exposure_line(study["exposure"]), soft_wrap=True)
     console.print(mask_line(study["mask_shift"]), soft_wrap=True)
     if study["sobol_draws"]:
         console.print(_sensitive(study))
@@ -86,6 +88,16 @@ def _tried(study: dict[str, Any]) -> str:
             objects.append(f"{poses['cable']} cables of {', '.join(diameters)} mm{each}")
         tried.append(f"gap {grasp['gap_mm']:g} mm: {', '.join(objects)}")
     return "; ".join(tried)
+
+
+def _exposure_line(exposure: float | None) -> str:
+    """LED current times pull-up of the design, against that of the goals file's base."""
+    if exposure is None:
+        return (
+            "Exposure: not known, since LED or photodetector are not those of the goals file's "
+            "base; taken as its own."
+        )
+    return f"Exposure: {exposure:.2f} times that of the goals file's base."
 
 
 def goals_text(goals: dict[str, float]) -> str:

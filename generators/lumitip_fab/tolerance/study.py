@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -97,6 +98,7 @@ def study(
             {"gap_mm": grasp.gap_mm, "edges": grasp.edges, "cables_mm": list(grasp.cables_mm)}
             for grasp in options.grasps
         ],
+        **({"exposure": options.exposure} if options.file else {}),
         "fingers": options.fingers,
         "poses": {"edge": options.poses, "cable": options.poses, "sets": POSE_SETS},
         "seed": options.seed,
@@ -152,10 +154,11 @@ def cases_of(config: Input, layout: Layout, options: Options) -> tuple[Case, ...
             "allows grids of two columns and two rows or more. Add cells."
         )
         raise InputError([Problem(file, 0, "grid.columns", text)])
+    gain = Model.gain * (options.exposure or 1.0)
     cases = tuple(
         Case(
             layout,
-            Model.from_layout(layout, grasp.gap_mm),
+            replace(Model.from_layout(layout, grasp.gap_mm), gain=gain),
             options.poses,
             options.seed,
             grasp.edges,

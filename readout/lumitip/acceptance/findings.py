@@ -16,6 +16,10 @@ THICK_MM = 0.3
 """Most by which the silicone may be thicker or thinner: six deviations of one that is cast well."""
 HOLE_MM = 0.5
 """Most by which the holes may be wider or narrower."""
+GUARD_SD = 0.5
+"""Of the standard deviation of what the gauge measures, by which it must stay within its limit
+(guarded acceptance, as JCGM 106 has it): fingers out of tolerance are then rather found than not.
+"""
 MISFIT = 12.0
 """Most rms difference from the twin (counts of 255). The published frame of a cloth edge differs by
 9, those of corner and cable by more, of objects that nobody measured."""

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 from lumitip.acceptance.findings import (
     GAP_MM,
+    GUARD_SD,
     HOLE_MM,
     MASK_DEG,
     MASK_MM,
@@ -18,6 +19,7 @@ from lumitip.acceptance.fit import Fitted
 from lumitip.acceptance.response import named
 
 _FINGERS = ("receiver", "emitter")
+_NO_WAY_MM = 1e-9
 
 
 def faults_of_fingers(
@@ -32,9 +34,9 @@ def faults_of_fingers(
         reference: mean deviations of good fingers, if there are any.
         thicker_mm: silicone of receiver and emitter beyond the drawing, if it was measured.
     """
-    of = named(fitted.deviations)
-    every = [_mask(finger, of) for finger in _FINGERS]
-    every += [_gap(of), _silicone(of, reference), _holes(of)]
+    of, guards = named(fitted.deviations), named(GUARD_SD * fitted.sd)
+    every = [_mask(finger, of, guards) for finger in _FINGERS]
+    every += [_gap(of, guards), _silicone(of, guards, reference), _holes(of, guards)]
     every += [_thickness(*each) for each in zip(_FINGERS, thicker_mm or (), strict=False)]
     found = sorted((f for f in every if f.times_limit > 1.0), key=lambda f: -f.times_limit)
     if fitted.rms > MISFIT:
@@ -47,33 +49,41 @@ def faults_of_fingers(
     return found
 
 
-def _mask(finger: str, of: Mapping[str, float]) -> Finding:
+_Named = Mapping[str, float]
+"""By names of deviations: the deviations, or by how much each must be within its limit."""
+
+
+def _mask(finger: str, of: _Named, guards: _Named) -> Finding:
     x, y, turn = (of[f"{finger}_{way}"] for way in ("x", "y", "turn"))
+    off = math.hypot(x, y)
+    along = math.hypot(x * guards[f"{finger}_x"], y * guards[f"{finger}_y"])
+    most_mm = _guarded(MASK_MM, along / max(off, _NO_WAY_MM))
+    most_deg = _guarded(MASK_DEG, guards[f"{finger}_turn"])
     text = (
         f"{finger}'s mask: {_direction(x, y)}, turned by {abs(turn):.1f}° to the "
         f"{'left' if turn > 0 else 'right'}, seen on the receiver with the tip up; at most "
-        f"{MASK_MM:g} mm and {MASK_DEG:g}°. Lay it anew"
+        f"{most_mm:.2f} mm and {most_deg:.1f}°. Lay it anew"
     )
-    times = max(math.hypot(x, y) / MASK_MM, abs(turn) / MASK_DEG)
-    return Finding(f"{finger} mask", text, times_limit=times)
+    return Finding(f"{finger} mask", text, times_limit=max(off / most_mm, abs(turn) / most_deg))
 
 
-def _gap(of: Mapping[str, float]) -> Finding:
+def _gap(of: _Named, guards: _Named) -> Finding:
+    most_mm = _guarded(GAP_MM, guards["gap"])
     text = (
-        f"gap: {of['gap']:+.2f} mm beyond the gauge's; at most {GAP_MM:g} mm. Does something lie "
-        "between gauge and skin, is a finger bent or not parallel?"
+        f"gap: {of['gap']:+.2f} mm beyond the gauge's; at most {most_mm:.2f} mm. Does something "
+        "lie between gauge and skin, is a finger bent or not parallel?"
     )
-    return Finding("gap", text, times_limit=abs(of["gap"]) / GAP_MM)
+    return Finding("gap", text, times_limit=abs(of["gap"]) / most_mm)
 
 
-def _silicone(of: Mapping[str, float], reference: Mapping[str, float] | None) -> Finding:
+def _silicone(of: _Named, guards: _Named, reference: _Named | None) -> Finding:
     good, limits = ("good fingers", SCATTER) if reference else ("the drawing", SCATTER_ALONE)
     off = of["scatter"] - (reference or {}).get("scatter", 0.0)
-    less, more = limits
+    less, more = (_guarded(limit, guards["scatter"]) for limit in limits)
     text = (
         f"silicone: scattered share {off:+.2f} from {good}, {'milky' if off > 0 else 'clear'}; "
-        f"-{less:g} to +{more:g} is allowed. Is it the silicone of the bill, free of bubbles, and "
-        "the film's back clear?"
+        f"-{less:.2f} to +{more:.2f} is allowed. Is it the silicone of the bill, free of bubbles, "
+        "and the film's back clear?"
     )
     return Finding("silicone", text, times_limit=max(-off / less, off / more))
 
@@ -87,12 +97,18 @@ def _thickness(finger: str, thicker_mm: float) -> Finding:
     return Finding(f"{finger} thickness", text, times_limit=abs(thicker_mm) / THICK_MM)
 
 
-def _holes(of: Mapping[str, float]) -> Finding:
+def _holes(of: _Named, guards: _Named) -> Finding:
+    most_mm = _guarded(HOLE_MM, guards["hole"])
     text = (
-        f"holes: {of['hole']:+.2f} mm wider than the drawing's; at most {HOLE_MM:g} mm. Measure "
+        f"holes: {of['hole']:+.2f} mm wider than the drawing's; at most {most_mm:.2f} mm. Measure "
         "the mask's rulers and holes"
     )
-    return Finding("holes", text, times_limit=abs(of["hole"]) / HOLE_MM)
+    return Finding("holes", text, times_limit=abs(of["hole"]) / most_mm)
+
+
+def _guarded(limit: float, guard: float) -> float:
+    """What is accepted of a limit; at least half of it, where little is known."""
+    return limit - min(guard, limit / 2)
 
 
 def _direction(x_mm: float, y_mm: float) -> str:

@@ -289,7 +289,7 @@ def _cells(judged: Verdict, layout: Layout) -> str:
 
 
 def _table(deviations: dict[str, Any]) -> Iterator[str]:
-    yield "<table><tr><th>deviation<th>measured<th>limit</tr>"
+    yield "<table><tr><th>deviation<th>measured<th>limit, less half of ±</tr>"
     for of in deviations.values():
         unit = {"deg": "°", "mm": " mm"}.get(of["unit"], "")
         limit = "not judged" if of["limit"] is None else f"{of['limit']:g}{unit}"
