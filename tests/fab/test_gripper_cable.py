@@ -24,7 +24,7 @@ def test_a_gripper_that_draws_more_gets_its_makers_cable(written: Written) -> No
     step = steps(drawing(written(), 2.5))
     assert "takes up to 2.5 A" in step and "board carry 1.7 A" in step
     assert "use the cable that its maker has for robots without such a coupling" in step
-    assert "put a fuse of the gripper's own rating" not in step and "the gripper's |" not in step
+    assert "a fuse of the gripper's own rating" not in step and "the gripper's |" not in step
     assert "has its wires in the same socket" not in step
     assert "takes up to 1 A by its entry in `grippers.toml`, and the contacts here carry 1.7 A" in (
         steps(written())
@@ -56,25 +56,21 @@ def test_what_a_gripper_s_cable_needs_is_bought(inputs: dict[str, Input]) -> Non
 
 def test_the_gripper_gets_the_supply_before_the_fuse(written: Written) -> None:
     step = steps(written())
-    assert "The robot's lines are on J2. Its 24 V are on J3.7 and J3.8, before the fuse" in step
-    work = ["use the cable that its maker has", "Take the gripper off", "wires in the same socket"]
+    assert "Its 24 V, before the fuse and open to reversed polarity, are on J3.7 and J3.8" in step
+    work = ["use the one that its maker has", "Take the gripper off", "wires in the same socket"]
     work += ["Connect the gripper with its cable, and plug the socket of W3 in at J3"]
     assert sorted(work, key=step.index) == work
 
 
 def test_the_gripper_s_own_cable_has_a_fuse_and_a_limit(written: Written) -> None:
     step = steps(written())
-    assert "0.09 mm² (AWG 28) at most, which carries 1 A there" in step
-    assert (
-        "together, with as many of GND and the tracks that lead to them, they carry 1.7 A" in step
-    )
-    assert "a fuse of the gripper's own rating into the wire that starts there" in step
-    assert "40 mm longer than their way" in step
+    assert "takes 0.09 mm² (AWG 28) and 1 A, all with their tracks 1.7 A" in step
+    assert "use them all, and as many of GND, with a fuse of the gripper's own rating" in step
 
 
 def test_another_supply_is_named_by_its_voltage(written: Written) -> None:
     step = steps(written({"supply.voltage_v": 12.0}))
-    assert "Its 12 V are on J3.7 and J3.8" in step and "Its 24 V" not in step
+    assert "Its 12 V, before the fuse and" in step and "Its 24 V" not in step
     asked = "entry says 24 V for the supply contact, and this flange takes 12 V."
     assert asked in step and "for the supply contact" not in steps(written())
 
@@ -105,6 +101,8 @@ def test_a_supply_behind_the_fuse_is_not_offered(written: Written) -> None:
     assert "do not feed the gripper from it" in step and "before the fuse" not in step
 
 
-def test_a_flange_without_lines_names_none(written: Written) -> None:
-    step = steps(written(CLOSED))
-    assert "The robot's lines" not in step and "Its 24 V are on J3.7" in step
+def test_a_cable_starts_where_there_is_a_supply_or_a_line(written: Written) -> None:
+    assert "A cable of your own for the gripper starts here" in steps(written(CLOSED))
+    behind = (("GND",) * 7, (*SUPPLIES[:3], "SUPPLY", *SUPPLIES[4:]))
+    closed = written(CLOSED | {"flange.headers": behind})
+    assert "A cable of your own for the gripper" not in steps(closed)

@@ -76,7 +76,7 @@ def test_ties_close_the_arms_from_outside(written: Written, preset: str, robot: 
         for text in ("tie through each arm lug", "Clip the arms", "to a loop of some")
     )
     assert first < clipped < closed
-    assert f"the edge of {robot} towards the robot, that of J5 towards the fingers" in " ".join(
+    assert f"The edge of {robot} is towards the robot, that of J5 towards the fingers" in " ".join(
         step.split()
     )
     apart = [holder.cradle_mm + holder.wall_mm - holder.body_mm / 2, holder.arm_lugs[0].face_mm]

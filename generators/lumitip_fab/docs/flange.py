@@ -9,7 +9,13 @@ from lumitip_fab.design.cabling import INPUT_END, front_headers, plugged_headers
 from lumitip_fab.design.electrical import Indicator
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
 from lumitip_fab.docs.bolts import tightened
-from lumitip_fab.docs.gripper_cable import in_volts, own_cable, probed, raw_supply
+from lumitip_fab.docs.gripper_cable import (
+    cable_from_headers,
+    in_volts,
+    own_cable,
+    probed,
+    raw_supply,
+)
 from lumitip_fab.docs.protection import TVS, boards_of_later, protection_note
 from lumitip_fab.docs.steps import numbered
 from lumitip_fab.docs.wiring import pressed
@@ -150,6 +156,7 @@ def _contacts(design: Design) -> str:
         counted="" if plugs(design) else _text("counted"),
         wired=_text("other_contacts") if plugs(design) else "",
         rows="\n".join(_contact_rows(design)),
+        own=cable_from_headers(design),
     )
 
 

@@ -2,7 +2,7 @@
 
 from lumitip_fab.design import Design
 from lumitip_fab.design.board_rules import rules_of
-from lumitip_fab.design.cabling import INPUT_END, SLOT_A, SLOT_MM2, front_headers
+from lumitip_fab.design.cabling import INPUT_END, SLOT_A, SLOT_MM2
 from lumitip_fab.design.gripper_cable import GripperCable
 from lumitip_fab.design.gripper_cable import gripper_cable as cable_of
 from lumitip_fab.text import listed, passage
@@ -21,10 +21,17 @@ def gripper_cable(design: Design) -> str:
     own, mount = own_cable(design), design.mount
     if own.by_maker:
         return _text("makers_cable", mount=mount, most_a=own.most_a)
-    headers = _with_lines(design)
-    lines = _text("lines", lines=listed(headers)) if headers else ""
     drawn = _text("drawn", mount=mount, most_a=own.most_a) if own.feeds and mount.supply_a else ""
-    return _text("gripper_cable", supply=_supply(design, own), lines=lines, drawn=drawn)
+    behind = _text("behind_fuse") * (not own.fed_from)
+    return _text("gripper_cable", drawn=drawn, behind=behind)
+
+
+def cable_from_headers(design: Design) -> str:
+    """How a cable from the headers is made; empty where the gripper gets its maker's."""
+    own = own_cable(design)
+    if own.by_maker or not own.headers:
+        return ""
+    return _text("own_cable", supply=_supply(design, own))
 
 
 def in_the_list(design: Design) -> str:
@@ -35,21 +42,10 @@ def in_the_list(design: Design) -> str:
     return _text("listed_free", fused=_text("listed_fuse") * own.feeds)
 
 
-def _with_lines(design: Design) -> list[str]:
-    """Headers with a line of the robot that is no supply."""
-    return [
-        part.ref
-        for board in design.auxiliary_boards
-        if board.name == "flange"
-        for part in front_headers(board)
-        if {net for _, net in part.nets} - {*board.supplies}
-    ]
-
-
 def _supply(design: Design, own: GripperCable) -> str:
-    """The supply before the fuse, and how much its contacts carry; or that there is none."""
+    """The supply before the fuse, and how much its contacts carry; empty without it."""
     if not own.fed_from:
-        return _text("behind_fuse")
+        return ""
     return _text(
         "from_robot",
         pads=listed([*own.fed_from]),
@@ -57,7 +53,6 @@ def _supply(design: Design, own: GripperCable) -> str:
         slot_mm2=SLOT_MM2,
         each_a=SLOT_A,
         all_a=own.most_a,
-        slack_mm=design.cabling.slack_mm,
     )
 
 
