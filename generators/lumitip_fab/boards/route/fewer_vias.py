@@ -9,8 +9,9 @@ import numpy as np
 from lumitip_fab.boards.route import stamps
 from lumitip_fab.boards.route.kernels import Ints
 from lumitip_fab.boards.route.obstacles import Wanted
+from lumitip_fab.boards.route.pieces import supported
 from lumitip_fab.boards.route.spread import Spread
-from lumitip_fab.boards.route.trees import CostWeights, State, Unreachable, connect, supported
+from lumitip_fab.boards.route.trees import CostWeights, State, Unreachable, connect
 
 VIA_MM = 10.0  # of track that a via is worth
 SEARCHED_VIA_MM = 12.0  # the same while ways with fewer are looked for

@@ -48,17 +48,28 @@ def _sift_up(keys: NDArray[np.float64], nodes: Ints, at: int) -> None:
 
 @kernel
 def _sift_down(keys: NDArray[np.float64], nodes: Ints, size: int) -> None:
-    key, node, at = keys[0], nodes[0], 0
-    while True:
-        below = 2 * at + 1
-        if below >= size:
-            break
-        if below + 1 < size and keys[below + 1] < keys[below]:
-            below += 1
-        if keys[below] >= key:
-            break
+    """Put what is on top of the heap in its place.
+
+    It comes from the bottom, where it mostly ends again: the gap goes down to a leaf first, and
+    then comes up again as far as needed. That spares a test at each level. Indices are unsigned
+    in the loops that run most: numba looks at the sign of others.
+    """
+    key, node = keys[0], nodes[0]
+    one, two = np.uint64(1), np.uint64(2)
+    at, below, count = np.uint64(0), np.uint64(1), np.uint64(size)
+    while below + one < count:
+        below += np.uint64(keys[below + one] < keys[below])
+        keys[at], nodes[at] = keys[below], nodes[below]
+        at, below = below, two * below + one
+    if below < count:
         keys[at], nodes[at] = keys[below], nodes[below]
         at = below
+    while at > np.uint64(0):
+        above = (at - one) >> one
+        if keys[above] < key:
+            break
+        keys[at], nodes[at] = keys[above], nodes[above]
+        at = above
     keys[at], nodes[at] = key, node
 
 
@@ -91,8 +102,7 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
     costs: NDArray[np.float64],
     to_layer: NDArray[np.float64],
     reached: NDArray[np.float64],
-    came: Bytes,
-    seen: Ints,
+    came: Ints,
     turn: int,
     keys: NDArray[np.float64],
     queue: Ints,
@@ -120,7 +130,7 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
         grain: `(2, 8)`: length of a step, more across the grain of a layer.
         costs: of a via, and of bends of 45°, 90° and 135°, in steps of the grid.
         to_layer: `(2,)`: the least that vias still cost from each layer, 0 on one with a target.
-        reached, came, seen: scratch of `2 * H * W`: cost, direction, and turn of last use.
+        reached, came: scratch of `2 * H * W`: cost; turn of last use, times 16, and direction.
         turn: number of this search, above all before it.
         keys, queue: scratch of the heap.
         work: `(1,)`: nodes visited so far by all searches, counted on.
@@ -130,7 +140,12 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
     """
     height, width = owner.shape[2], owner.shape[3]
     plane = height * width
+    # Of each class in a row, so that the index of a node is that of its place on a layer.
+    holders = owner.reshape(owner.shape[0], 3 * plane)
+    others = taken.reshape(taken.shape[0], 3 * plane)
+    fought, necks, near = history.ravel(), neck.ravel(), near_via.ravel()
     capacity = keys.shape[0] - 12
+    mark = np.int32(turn << 4)
     size = 0
     for node in starts:
         rest = node % plane
@@ -139,7 +154,7 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
             continue
         if size >= capacity:
             break
-        seen[node], reached[node], came[node] = turn, 0.0, SOURCE
+        reached[node], came[node] = 0.0, mark | SOURCE
         keys[size], queue[size] = _left(y, x, box) + to_layer[node // plane], node
         _sift_up(keys, queue, size)
         size += 1
@@ -159,7 +174,7 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
         if target[node]:
             end = node
             break
-        before = came[node]
+        before = came[node] & 15
         here = tree[node] if before == SOURCE else 0
         for way in range(8):
             bend = 0.0
@@ -176,13 +191,14 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
             ny, nx = y + DY[way], x + DX[way]
             if ny < window[0] or ny > window[1] or nx < window[2] or nx > window[3]:
                 continue
-            there = layer * plane + ny * width + nx
-            known = reached[there] - 1e-4 if seen[there] == turn else np.inf
+            flat = np.uint64(ny * width + nx)
+            there = np.uint64(node + DY[way] * width + DX[way])
+            known = reached[there] - 1e-4 if came[there] >> 4 == turn else np.inf
             length = grain[layer, way]
             if so_far + bend + length >= known:
                 continue  # not even over free nodes; most neighbours end here, and cheaply
-            c = narrow if neck[ny, nx] else wide
-            holder = owner[c, layer, ny, nx]
+            c = narrow if necks[flat] else wide
+            holder = holders[c, there]
             if holder not in (0, net):
                 continue
             at_goal = tree[there]
@@ -193,32 +209,28 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
                 sharp = (1 << ((back + 1) & 7)) | (1 << (back & 7)) | (1 << ((back + 7) & 7))
                 if not at_goal & INSIDE_PAD and at_goal & sharp:
                     continue
-            cost = (
-                so_far
-                + bend
-                + length * (1 + history[layer, ny, nx]) * (1 + crowded * taken[c, layer, ny, nx])
-            )
+            cost = so_far + bend + length * (1 + fought[there]) * (1 + crowded * others[c, there])
             if cost < known:
-                seen[there], reached[there], came[there] = turn, cost, way
+                reached[there], came[there] = cost, mark | way
                 keys[size] = cost + _left(ny, nx, box) + to_layer[layer]
                 queue[size] = there
                 _sift_up(keys, queue, size)
                 size += 1
-        if before == VIA or near_via[y, x]:
+        if before == VIA or near[rest]:
             continue
-        there = node + plane if layer == 0 else node - plane
-        known = reached[there] - 1e-4 if seen[there] == turn else np.inf
+        there = np.uint64(node + plane if layer == 0 else node - plane)
+        known = reached[there] - 1e-4 if came[there] >> 4 == turn else np.inf
         if so_far + costs[0] >= known:
             continue
-        c = narrow if neck[y, x] else wide
-        holder = owner[c, 2, y, x]
+        c = narrow if necks[rest] else wide
+        holder = holders[c, 2 * plane + rest]
         if holder not in (0, net) or (tree[there] and not target[there]):
             continue
-        cost = so_far + costs[0] * (1 + history[0, y, x] + history[1, y, x]) * (
-            1 + crowded * taken[c, 2, y, x]
+        cost = so_far + costs[0] * (1 + fought[rest] + fought[plane + rest]) * (
+            1 + crowded * others[c, 2 * plane + rest]
         )
         if cost < known and not _via_behind(node, came, plane, width, via_reach):
-            seen[there], reached[there], came[there] = turn, cost, VIA
+            reached[there], came[there] = cost, mark | VIA
             keys[size], queue[size] = cost + _left(y, x, box) + to_layer[1 - layer], there
             _sift_up(keys, queue, size)
             size += 1
@@ -228,29 +240,29 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
 
 
 @kernel
-def _via_behind(node: int, came: Bytes, plane: int, width: int, reach: float) -> bool:
+def _via_behind(node: int, came: Ints, plane: int, width: int, reach: float) -> bool:
     """Whether the path to a node has a via nearer to it than the square root of `reach`."""
     y, x = node % plane // width, node % width
-    while came[node] not in (SOURCE, VIA):
-        node = _before(node, came[node], plane, width)
+    while came[node] & 15 not in (SOURCE, VIA):
+        node = _before(node, came[node] & 15, plane, width)
         dy, dx = node % plane // width - y, node % width - x
         if dy * dy + dx * dx >= reach:
             return False
-    return bool(came[node] == VIA)
+    return bool(came[node] & 15 == VIA)
 
 
 @kernel
-def _walked(end: int, came: Bytes, plane: int, width: int) -> Ints:
+def _walked(end: int, came: Ints, plane: int, width: int) -> Ints:
     count, node = 1, end
-    while came[node] != SOURCE:
-        node = _before(node, came[node], plane, width)
+    while came[node] & 15 != SOURCE:
+        node = _before(node, came[node] & 15, plane, width)
         count += 1
     path = np.empty(count, dtype=np.int32)
     node = end
     for i in range(count - 1, -1, -1):
         path[i] = node
         if i:
-            node = _before(node, came[node], plane, width)
+            node = _before(node, came[node] & 15, plane, width)
     return path
 
 

@@ -1,6 +1,8 @@
 """Where no track and no via can be, and where the tracks of a net end."""
 
+import math
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -164,6 +166,12 @@ class Wanted:
     """Of a net that is one via and no track: the nodes of the front where it may be,"""
     costs: Reals = field(default_factory=lambda: np.empty(0))
     """and the cost of each."""
+
+    @cached_property
+    def apart_mm(self) -> list[list[float]]:
+        """Distances of its pads."""
+        at = [(t.pad.x_mm, t.pad.y_mm) for t in self.terminals]
+        return [[round(math.hypot(u - x, v - y), 6) for u, v in at] for x, y in at]
 
 
 def wanted(

@@ -12,8 +12,9 @@ from lumitip_fab.boards.route.beside import beside
 from lumitip_fab.boards.route.fewer_vias import lower_via_count, polish
 from lumitip_fab.boards.route.kernels import Ints
 from lumitip_fab.boards.route.obstacles import Obstacles, TightError, Wanted, wanted
+from lumitip_fab.boards.route.pieces import supported
 from lumitip_fab.boards.route.rules import Grid, Rules
-from lumitip_fab.boards.route.trees import CostWeights, State, Unreachable, connect, supported
+from lumitip_fab.boards.route.trees import CostWeights, State, Unreachable, connect
 from lumitip_fab.errors import BuildError
 
 

@@ -153,17 +153,29 @@ def stamp(
 
 
 @kernel
-def mark(path: Ints, tree: Shorts, plane: int, width: int) -> None:
-    """Note at a path's nodes which ways its tracks go, and where it has vias: see `search`."""
+def mark(path: Ints, tree: Shorts, near_via: Bytes, via_reach: float) -> None:
+    """Note at a path's nodes which ways its tracks go, and where it has vias.
+
+    Args:
+        path: of the net at hand.
+        tree, near_via, via_reach: see `search`.
+    """
+    height, width = near_via.shape
+    plane, reach = height * width, int(np.sqrt(via_reach)) + 1
     for i in range(path.size - 1):
         a, b = path[i], path[i + 1]
-        way = way_of(b % plane // width - a % plane // width, b % width - a % width)
-        if way == VIA:
-            tree[a] |= INSIDE_PAD
-            tree[b] |= INSIDE_PAD
-        else:
+        y, x = a % plane // width, a % width
+        way = way_of(b % plane // width - y, b % width - x)
+        if way != VIA:
             tree[a] |= 1 << way
             tree[b] |= 1 << ((way + 4) & 7)
+            continue
+        tree[a] |= INSIDE_PAD
+        tree[b] |= INSIDE_PAD
+        for v in range(max(y - reach, 0), min(y + reach + 1, height)):
+            for u in range(max(x - reach, 0), min(x + reach + 1, width)):
+                if (v - y) ** 2 + (u - x) ** 2 < via_reach:
+                    near_via[v, u] = 1
 
 
 @kernel

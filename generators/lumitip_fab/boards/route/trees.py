@@ -1,6 +1,5 @@
 """State and costs of routing; one net, from pads and paths that may stay to a tree of them all."""
 
-import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,6 +9,7 @@ from lumitip_fab.boards.route import kernels, stamps
 from lumitip_fab.boards.route.beside import cheapest
 from lumitip_fab.boards.route.kernels import INSIDE_PAD, Ints
 from lumitip_fab.boards.route.obstacles import Terminal, Wanted
+from lumitip_fab.boards.route.pieces import Near, Piece, nearest, pieces, with_nodes
 from lumitip_fab.boards.route.rules import HOLE_TO_HOLE_MM, Grid, Rules
 
 _END = np.array([-1], dtype=np.int32)
@@ -37,8 +37,7 @@ class State:
         self.tracks = self.rules.radii(pitch, via=False)
         self.vias = self.rules.radii(pitch, via=True)
         self.reached = np.zeros(count)
-        self.came = np.zeros(count, dtype=np.uint8)
-        self.seen = np.zeros(count, dtype=np.int32)
+        self.came = np.zeros(count, dtype=np.int32)
         self.tree = np.zeros(count, dtype=np.int16)
         self.target = np.zeros(count, dtype=np.uint8)
         self.keys = np.empty(4 * count, dtype=np.float64)
@@ -46,6 +45,8 @@ class State:
         self.joined: dict[str, tuple[list[Ints], Ints]] = {}
         self.work = np.zeros(1, dtype=np.int64)
         self.near_via = np.zeros((grid.height, grid.width), dtype=np.uint8)
+        # Squared, in steps: a little less than the least distance of two vias that is allowed.
+        self.via_reach = ((self.rules.drill_mm + HOLE_TO_HOLE_MM - 1e-9) / pitch) ** 2
 
     def clear(self) -> None:
         """Take all nets off the maps, and forget what was fought for."""
@@ -122,14 +123,6 @@ class CostWeights:
         return grain
 
 
-@dataclass
-class Piece:
-    """A connected part of a net."""
-
-    terminals: list[Terminal]
-    nodes: list[Ints]
-
-
 def connect(state: State, net: Wanted, kept: list[Ints], weights: CostWeights) -> list[Ints]:
     """Paths that connect all pads of a net, each time from the tree to what is nearest.
 
@@ -151,18 +144,17 @@ def connect(state: State, net: Wanted, kept: list[Ints], weights: CostWeights) -
     try:
         for path in kept:
             _join(state, path, paths)
-        tree, *rest = _pieces(net, kept)
-        nearest = {i: _nearest(tree.terminals, piece) for i, piece in enumerate(rest)}
-        while nearest:
-            which = min(nearest, key=lambda i: nearest[i][0])
-            _, near, far = nearest.pop(which)
+        tree, *rest = pieces(net, kept)
+        starts = np.unique(np.concatenate(tree.nodes))
+        ways = {i: nearest(net, tree.terminals, piece) for i, piece in enumerate(rest)}
+        while ways:
+            which = min(ways, key=lambda i: ways[i][0])
             goal = rest[which]
-            path = _path(state, net, tree, goal, (near, far), weights)
+            path = _path(state, net, starts, goal, ways.pop(which), weights)
             _join(state, path, paths)
-            tree.terminals += goal.terminals
-            tree.nodes += [path, *goal.nodes]
-            for i, found in nearest.items():
-                nearest[i] = min(found, _nearest(goal.terminals, rest[i]), key=lambda f: f[0])
+            starts = with_nodes(starts, [path, *goal.nodes])
+            for i, found in ways.items():
+                ways[i] = min(found, nearest(net, goal.terminals, rest[i]), key=lambda f: f[0])
     finally:  # also where a pad is out of reach
         for nodes in (*touched, *paths):
             state.tree[nodes] = 0
@@ -170,80 +162,36 @@ def connect(state: State, net: Wanted, kept: list[Ints], weights: CostWeights) -
     return paths
 
 
-def supported(net: Wanted, paths: list[Ints]) -> list[Ints]:
-    """Those paths of a net whose both ends are in a pad or at another such path."""
-    pads = {n for t in net.terminals for n in t.nodes.tolist()}
-    while True:
-        ends = [(int(p[0]), int(p[-1])) for p in paths]
-        nodes = [set(p.tolist()) for p in paths]
-        firm = [
-            i
-            for i in range(len(paths))
-            if all(
-                end in pads or any(end in nodes[j] for j in range(len(paths)) if j != i)
-                for end in ends[i]
-            )
-        ]
-        if len(firm) == len(paths):
-            return paths
-        paths = [paths[i] for i in firm]
-
-
-def _pieces(net: Wanted, kept: list[Ints]) -> list[Piece]:
-    """Connected parts of a net, the largest first."""
-    pieces = [Piece([t], [t.nodes]) for t in net.terminals]
-    labelled = list(pieces)
-    label = {int(n): i for i, p in enumerate(pieces) for nodes in p.nodes for n in nodes}
-    for path in kept:
-        on_path = path.tolist()
-        met = {id(p): p for p in (labelled[label[n]] for n in on_path if n in label)}
-        one = Piece([], [path])
-        for piece in met.values():
-            one.terminals += piece.terminals
-            one.nodes += piece.nodes
-        labelled = [one if id(p) in met else p for p in labelled] + [one]
-        label.update(dict.fromkeys(on_path, len(labelled) - 1))
-        pieces = [p for p in pieces if id(p) not in met] + [one]
-    return sorted(pieces, key=lambda p: -len(p.terminals))
-
-
-def _apart(a: Terminal, b: Terminal) -> float:
-    return round(math.hypot(a.pad.x_mm - b.pad.x_mm, a.pad.y_mm - b.pad.y_mm), 6)
-
-
-def _nearest(terminals: list[Terminal], piece: Piece) -> tuple[float, Terminal, Terminal]:
-    found = ((_apart(a, b), a, b) for a in terminals for b in piece.terminals)
-    return min(found, key=lambda f: f[0])
-
-
-def _box(grid: Grid, nodes: list[Ints]) -> Ints:
+def _box(grid: Grid, nodes: Ints) -> Ints:
     """First and last y, first and last x."""
-    y, x = np.divmod(np.concatenate(nodes) % grid.plane, grid.width)
+    y, x = np.divmod(nodes % grid.plane, grid.width)
     return np.array([y.min(), y.max(), x.min(), x.max()], dtype=np.int32)
 
 
 def _path(
     state: State,
     net: Wanted,
-    tree: Piece,
+    starts: Ints,
     goal: Piece,
-    ends: tuple[Terminal, Terminal],
+    way: Near,
     weights: CostWeights,
 ) -> Ints:
     """The cheapest path from the tree to another piece: near the two, or else anywhere."""
-    for nodes in goal.nodes:
-        state.target[nodes] = 1
-    box = _box(state.grid, goal.nodes)
+    apart_mm, *numbers = way
+    near_end, far_end = (net.terminals[i] for i in numbers)
+    goal_nodes = np.concatenate(goal.nodes)
+    state.target[goal_nodes] = 1
+    box = _box(state.grid, goal_nodes)
     height, width = state.grid.height, state.grid.width
     everywhere = np.array([0, height - 1, 0, width - 1], dtype=np.int32)
-    margin = round((weights.margin_mm + 0.2 * _apart(*ends)) / state.grid.pitch_mm)
-    near = _box(state.grid, [ends[0].nodes, *goal.nodes]) + margin * np.array([-1, 1, -1, 1])
+    margin = round((weights.margin_mm + 0.2 * apart_mm) / state.grid.pitch_mm)
+    both = _box(state.grid, np.concatenate([near_end.nodes, goal_nodes]))
+    near = both + margin * np.array([-1, 1, -1, 1])
     near = np.clip(near, 0, everywhere[[1, 1, 3, 3]]).astype(np.int32)
-    starts = np.unique(np.concatenate(tree.nodes))
     costs = weights.costs(state.grid.pitch_mm)
     to_layer = np.full(2, costs[0])
-    to_layer[np.unique(np.concatenate(goal.nodes) // state.grid.plane)] = 0.0
-    via_reach = (_via_reach_mm(state) / state.grid.pitch_mm) ** 2
+    on_back = goal_nodes >= state.grid.plane
+    to_layer[np.array([not on_back.all(), on_back.any()])] = 0.0
     for window in (near, everywhere):
         state.turn += 1
         path = kernels.search(
@@ -257,7 +205,7 @@ def _path(
             window,
             net.neck,
             state.near_via,
-            via_reach,
+            state.via_reach,
             net.number,
             net.wide,
             state.rules.narrow,
@@ -267,7 +215,6 @@ def _path(
             to_layer,
             state.reached,
             state.came,
-            state.seen,
             state.turn,
             state.keys,
             state.queue,
@@ -275,25 +222,13 @@ def _path(
         )
         if path.size:
             break
-    for nodes in goal.nodes:
-        state.target[nodes] = 0
+    state.target[goal_nodes] = 0
     if not path.size:
-        raise Unreachable(net.name, ends)
+        raise Unreachable(net.name, (near_end, far_end))
     return path
 
 
 def _join(state: State, path: Ints, paths: list[Ints]) -> None:
     """Mark a path of the net at hand, and add it to the others."""
     paths.append(path)
-    grid, reach = state.grid, _via_reach_mm(state)
-    stamps.mark(path, state.tree, grid.plane, grid.width)
-    for a in path[:-1][np.abs(np.diff(path)) == grid.plane].tolist():
-        at = grid.at(a)
-        where = grid.near(*at, reach)
-        x, y = grid.offsets(where, *at)
-        state.near_via[where][np.hypot(x, y) < reach] = 1
-
-
-def _via_reach_mm(state: State) -> float:
-    """Distance of two vias, a little less than the least that is allowed."""
-    return state.rules.drill_mm + HOLE_TO_HOLE_MM - 1e-9
+    stamps.mark(path, state.tree, state.near_via, state.via_reach)
