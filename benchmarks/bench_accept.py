@@ -5,7 +5,7 @@ lies 0.1 mm beside its place. A calliper measures the silicone within 0.05 mm. A
 tolerance if a true deviation is beyond the limits of `lumitip.acceptance.findings`, injected or
 not. It is named rightly if all of its faults are found, at their cells, and the first finding is
 one of them. A fault that the finger's own spread brings back within the limit lies next to it: such
-fingers stand in a line of their own, and an alarm there is no false one. The scattered share is
+fingers stand in a line of their own. The scattered share is
 compared with the mean of eight good fingers: the measured share with their measured one, the true
 share with their true one.
 
@@ -142,11 +142,12 @@ def table(found: list[Tried], goals: Goals) -> None:
             print(f"  {name:<18}{fingers[name]:>9}{caught[name]:>9}{right[name]:>15}")
     good = [one for one in found if not one.out and one.fault == "none"]
     near = [one for one in found if not one.out and one.fault != "none"]
-    alarms, borderline = (
-        Counter(one.alarms[0] for one in each if one.alarms) for each in (good, near)
-    )
+    alarms = Counter(one.alarms[0] for one in good if one.alarms)
     print(f"  {'none':<18}{len(good):>9}; false alarms: {dict(alarms) or 'none'}")
-    print(f"  {'within the limit':<18}{len(near):>9}; alarms: {dict(borderline) or 'none'}")
+    kinds = Counter(f"{one.fault}: {one.alarms[0]}" for one in near if one.alarms)
+    print(f"  {'within the limit':<18}{len(near):>9}; fault and alarm: {dict(kinds) or 'none'}")
+    within = 100.0 * sum((alarms + kinds).values()) / max(len(good) + len(near), 1)
+    print(f"  alarms of all fingers within their limits: {within:.1f} %")
     if fingers:
         share = 100.0 * sum(right.values()) / sum(fingers.values())
         goals.at_least("out of tolerance, caught and named rightly", share, CAUGHT, "%")

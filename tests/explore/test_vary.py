@@ -7,6 +7,7 @@ import pytest
 
 from lumitip_fab.config.load import Input, load
 from lumitip_fab.errors import InputError
+from lumitip_fab.explore.run import without_price
 from lumitip_fab.explore.vary import axes, changed, combinations, same_size
 
 
@@ -52,6 +53,7 @@ def test_an_automatic_value_is_left_to_the_derivation(config: Input) -> None:
     assert (again.value(field), field in again.automatic) == (start, True)
     (axis,) = axes(config, ["emitter.led=auto,VSMY1850"], points=2)
     assert axis.values == ("auto", "VSMY1850")
+    assert without_price(config, [axis]) == [], "each LED of the catalogue has a price"
     with pytest.raises(InputError, match=r"grid\.pitch_mm is 'auto'"):
         axes(config, ["grid.pitch_mm=auto,5"], points=2)
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -64,8 +65,8 @@ def test_the_gripper_gets_the_supply_before_the_fuse(written: Written) -> None:
 
 def test_the_gripper_s_own_cable_has_a_fuse_and_a_limit(written: Written) -> None:
     step = steps(written())
-    assert "takes 0.09 mm² (AWG 28) and 1 A, all with their tracks 1.7 A" in step
-    assert "use them all, and as many of GND, with a fuse of the gripper's own rating" in step
+    assert "takes 0.09 mm² (AWG 28) and 1 A, all together, with GND and tracks, 1.7 A" in step
+    assert "join the wires of them all to one, with a fuse of the gripper's own rating" in step
 
 
 def test_another_supply_is_named_by_its_voltage(written: Written) -> None:
@@ -101,8 +102,27 @@ def test_a_supply_behind_the_fuse_is_not_offered(written: Written) -> None:
     assert "do not feed the gripper from it" in step and "before the fuse" not in step
 
 
-def test_a_cable_starts_where_there_is_a_supply_or_a_line(written: Written) -> None:
+def test_headers_that_offer_nothing_leave_the_maker_s_cable(
+    written: Written, inputs: dict[str, Input], vary: Any
+) -> None:
     assert "A cable of your own for the gripper starts here" in steps(written(CLOSED))
     behind = (("GND",) * 7, (*SUPPLIES[:3], "SUPPLY", *SUPPLIES[4:]))
-    closed = written(CLOSED | {"flange.headers": behind})
-    assert "A cable of your own for the gripper" not in steps(closed)
+    changes = CLOSED | {"flange.headers": behind}
+    step = steps(written(changes))
+    assert "have neither a supply nor lines for it. So use the cable that its maker has" in step
+    assert "A cable of your own" not in step and "the gripper's |" not in step
+    pieces = [p.pack for p in derive(vary(inputs["published"], changes)).purchase.pieces]
+    assert "gripper cable by maker" in pieces and "gripper cable" not in pieces
+
+
+def test_a_current_that_is_not_known_is_asked_for(written: Written) -> None:
+    step = steps(drawing(written(), 0.0))
+    assert "carry 1.7 A: if the gripper draws more by its manual, or more than the robot's" in step
+
+
+def test_spring_contacts_of_the_robot_limit_what_the_headers_carry(written: Written) -> None:
+    design = written()
+    (flange,) = design.flanges
+    for contact_a, most_a in ((2.0, 1.7), (1.0, 0.7), (0.0, 0.0)):
+        own = own_cable(replace(design, flanges=(replace(flange, contact_a=contact_a),)))
+        assert (own.most_a, own.by_maker) == (most_a, most_a < 1)

@@ -68,7 +68,9 @@ def test_a_dim_design_is_tried_with_its_exposure(
         dim.write_text(f"{text}[receiver]\npull_up_ohm = {ohm:g}\n", encoding="utf-8")
         command = ["tolerance", str(dim), "--goals", str(goals), "--out", str(tmp_path), *FEW]
         assert main(command) == 0
-        assert f"Exposure: {share:.2f} times that of" in capsys.readouterr().out
+        printed = " ".join(capsys.readouterr().out.split())
+        assert f"LED current times pull-up is {share:.2f} times that of the base" in printed
+        assert ("noise counts 4.0 times as much" in printed) == (share == 0.25)
         found = json.loads((tmp_path / "tolerance.json").read_text(encoding="utf-8"))
         assert found["exposure"] == pytest.approx(share, abs=0.01)
         errors_mm[share] = found["columns"]["after self-calibration"]["edge_mm"]["50"]

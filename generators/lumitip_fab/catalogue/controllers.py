@@ -51,6 +51,8 @@ class Strip(Ordered, Entry):
     """Above the board."""
     stroke_mm: float = Field(default=0, ge=0, le=10)
     """Travel of spring contacts; 0 for others."""
+    contact_a: float = Field(default=0, ge=0, le=100)
+    """Largest current of a spring contact; 0 where it is not known."""
     hand_soldered: bool = False
     """Whether it is soldered on by hand, and so in no PCB fab's bill or placement list."""
     shroud: Shroud | None = None

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 from lumitip_fab.checks.board_read import ReadBoard
 from lumitip_fab.checks.result import Measurement
+from lumitip_fab.design import AuxiliaryBoard, Design
 from lumitip_fab.design.board_rules import rules_of
 from lumitip_fab.design.cabling import INPUT_END
 from lumitip_fab.design.gripper_cable import gripper_cable, sensor_a
@@ -19,11 +20,7 @@ def measure_warming(read: ReadBoard) -> Iterator[Measurement]:
     board = read.auxiliary
     if board is None:
         return
-    design = read.design
-    cables, gripper_a = design.cabling.cables, design.mount.supply_a
-    width_mm = rules_of(design, board.name).supply_track_mm
-    offered = gripper_cable([board], cables, gripper_a, width_mm)
-    beside_a = (gripper_a or offered.most_a) if offered.feeds else 0.0
+    cables, beside_a = read.design.cabling.cables, _gripper_a(read.design, board)
     found = [(-math.inf, "no track")]
     for piece in read.board.loose:
         if piece.kind == "track" and piece.net in board.supplies and piece.net != "GND":
@@ -33,3 +30,14 @@ def measure_warming(read: ReadBoard) -> Iterator[Measurement]:
     worst, note = max(found)
     if worst > 0:
         yield read.figure("warming", worst, 0, MOST_K + _ROUND_K, "K", f"{note}, by IPC-2221")
+
+
+def _gripper_a(design: Design, board: AuxiliaryBoard) -> float:
+    """What the gripper draws over a board: all that is offered, where its current is not known."""
+    if board.name != "flange":
+        return 0.0
+    (flange,) = design.flanges
+    gripper_a, width_mm = design.mount.supply_a, rules_of(design, board.name).supply_track_mm
+    cables = design.cabling.cables
+    offered = gripper_cable([board], cables, gripper_a, width_mm, flange.contact_a)
+    return (gripper_a or offered.most_a) if offered.feeds else 0.0

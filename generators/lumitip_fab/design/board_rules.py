@@ -25,5 +25,10 @@ def rules_of(design: Design, name: str) -> Rules:
     coarser = {of: max(getattr(design.rules, of), least) for of, least in COMMON_MM.items()}
     if design.rules.track_mm < COMMON_MM["track_mm"]:
         coarser["edge_gap_mm"] = max(design.rules.edge_gap_mm, COMMON_EDGE_MM)
-    supply_mm = max(design.rules.supply_track_mm, coarser["track_mm"])
+    supply_mm = common_supply_mm(max(design.rules.supply_track_mm, coarser["track_mm"]))
     return replace(design.rules, **coarser, supply_track_mm=supply_mm)
+
+
+def common_supply_mm(written_mm: float) -> float:
+    """Width of a supply's tracks on a board that keeps to what is common."""
+    return max(written_mm, COMMON_MM["track_mm"])

@@ -195,6 +195,11 @@ def holder_to_tool(holder: Holder, system: System) -> Matrix:
     return matrix
 
 
+def holder_edge_mm(holder: Holder, system: System) -> float:
+    """From the plane that the gripper stands on to the nearer edge of a holder."""
+    return system.holder_z_mm - holder.outer.length_mm / 2 - system.gripper_z_mm
+
+
 def sheet_bed_to_sensor() -> Matrix:
     """From the print bed of a mask's sheet, on which its outer face lies, to the sensor frame."""
     return rotation_y(180.0)

@@ -137,15 +137,13 @@ class Fastener:
     """A metric thread with its heads and nut, as the catalogue has them."""
 
     name: str
-    """Name of the thread, such as M5."""
+    """Of the thread, such as M5."""
     thread_mm: float
-    """Outer diameter."""
     hole_mm: tuple[float, float]
     """Clearance holes, fine and coarse."""
     cap_head_mm: float
-    """Diameter of the head of a socket head cap screw."""
+    """Diameter of the head of a socket head cap screw; that of a countersunk one follows."""
     countersunk_mm: float
-    """Diameter of the head of a countersunk screw."""
     nut_mm: float
     """Width of its nut, across flats."""
     nut_height_mm: float
@@ -187,11 +185,6 @@ class System:
     """Names of the holders that go round that body."""
     holder_z_mm: float
     """Middle of those."""
-
-    def holder_edge_mm(self, length_mm: float) -> float:
-        """From the plane that the gripper stands on to the nearer edge of a holder that is so long
-        along the tool axis."""
-        return self.holder_z_mm - length_mm / 2 - self.gripper_z_mm
 
     @property
     def body_is_known(self) -> bool:
@@ -282,6 +275,8 @@ class Flange:
     """Height of the free spring contacts above the board's back."""
     stroke_mm: float
     """Travel of the spring contacts."""
+    contact_a: float
+    """Largest current of one of them; 0 where it is not known."""
     openings: tuple[Box, ...]
     """Through the walls, for the headers and their cables, above the board's front."""
     screws: tuple[Point, ...]

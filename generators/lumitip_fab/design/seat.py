@@ -10,13 +10,14 @@ take part. Heads are the catalogue's, by ISO 4762.
 import math
 from dataclasses import dataclass
 
-from lumitip_fab.design.mount import Fastener, Mount
+from lumitip_fab.design.mount import Mount
 
 NUT_FACTOR = 0.2
 """Torque of a bolt against its pull and thread, dry steel (Shigley, Mechanical Engineering Design,
 torque factors K)."""
 PRELOAD_SHARE = 0.5
-"""Of what plastic under a head bears, for the pre-load: the rest is the load's."""
+"""Most of what plastic under a head bears, for the pre-load. A load adds almost wholly to it: bolts
+are much stiffer than the plastic that they press."""
 
 
 @dataclass(frozen=True)
@@ -84,14 +85,13 @@ def designed_seat(mount: Mount, head_mm: float, pull: float) -> Seated:
     return Seated(pull, pull / area, pull * max(1 / round_mm2, within / over_mm2))
 
 
-def torque_nm(bolt: Fastener, hole_mm: float, bearing_mpa: float) -> float:
+def torque_nm(thread_mm: float, bears_n: float, pull_n: float) -> float:
     """Torque that a bolt is tightened with, its head or what it clamps on plastic.
 
     Args:
-        bolt: its thread and head.
-        hole_mm: through the plastic.
-        bearing_mpa: what the plastic bears when it is pressed.
+        thread_mm: its diameter.
+        bears_n: force on that plastic that breaks it.
+        pull_n: greatest load.
     """
-    area_mm2 = math.pi / 4 * (bolt.cap_head_mm**2 - hole_mm**2)
-    preload_n = PRELOAD_SHARE * bearing_mpa * area_mm2
-    return NUT_FACTOR * preload_n * bolt.thread_mm / 1000
+    preload_n = min(PRELOAD_SHARE * bears_n, bears_n - pull_n)
+    return NUT_FACTOR * preload_n * thread_mm / 1000

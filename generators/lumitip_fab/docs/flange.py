@@ -8,7 +8,7 @@ from lumitip_fab.design import AuxiliaryBoard, Design, Flange
 from lumitip_fab.design.cabling import INPUT_END, front_headers, plugged_headers
 from lumitip_fab.design.electrical import Indicator
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
-from lumitip_fab.docs.bolts import tightened
+from lumitip_fab.docs.bolts import flange_bolts
 from lumitip_fab.docs.gripper_cable import (
     cable_from_headers,
     in_volts,
@@ -106,7 +106,7 @@ def _built_in(design: Design, flange: Flange) -> Iterator[str]:
     wait = f"for {hard_h:g} h" if hard_h else "for as long as its label says"
     out_mm = flange.pin_length_mm - flange.pin_depth_mm
     yield _text("closed", flange=flange, glue=design.strength.glue, wait=wait, out_mm=out_mm)
-    tight = tightened(design, flange.bolt, flange.bolt_hole_mm, f"flange/{flange.name}")
+    tight = flange_bolts(design, flange)
     yield _text("bolted", flange=flange, bolts=len(flange.bolts), tight=tight)
     yield from _powered(design)
 
@@ -170,7 +170,7 @@ def _contact_rows(design: Design) -> Iterator[str]:
             pins = [pin for pin, carried in part.nets if carried == net]
             found = [f"{ends[part.ref, p]} at {p}" for p in pins if (part.ref, p) in ends]
             of_robot = net.endswith(INPUT_END) or net not in board.supplies
-            if (net == "GND" or of_robot) and not own.by_maker:
+            if (of_robot or (net == "GND" and part.ref in own.headers)) and not own.by_maker:
                 found.append("the gripper's")
             shown = ", ".join(found) or "none"
             yield f"| {part.ref} | {', '.join(pins)} | {as_written(net)} | {shown} |"

@@ -11,8 +11,9 @@ from lumitip_fab.text import listed, passage
 def own_cable(design: Design) -> GripperCable:
     """What the flange's headers have for the gripper."""
     track_mm = rules_of(design, "flange").supply_track_mm
+    (flange,) = design.flanges
     cables, supply_a = design.cabling.cables, design.mount.supply_a
-    return cable_of(design.auxiliary_boards, cables, supply_a, track_mm)
+    return cable_of(design.auxiliary_boards, cables, supply_a, track_mm, flange.contact_a)
 
 
 def gripper_cable(design: Design) -> str:
@@ -20,8 +21,13 @@ def gripper_cable(design: Design) -> str:
     robot's."""
     own, mount = own_cable(design), design.mount
     if own.by_maker:
-        return _text("makers_cable", mount=mount, most_a=own.most_a)
-    drawn = _text("drawn", mount=mount, most_a=own.most_a) if own.feeds and mount.supply_a else ""
+        name = "draws_more" if own.fed_from else "nothing_offered"
+        why = _text(name, mount=mount, most_a=own.most_a)
+        return _text("makers_cable", why=why)
+    drawn = ""
+    if own.feeds:
+        name = "drawn" if mount.supply_a else "not_known"
+        drawn = _text(name, mount=mount, most_a=own.most_a)
     behind = _text("behind_fuse") * (not own.fed_from)
     return _text("gripper_cable", drawn=drawn, behind=behind)
 
@@ -29,7 +35,7 @@ def gripper_cable(design: Design) -> str:
 def cable_from_headers(design: Design) -> str:
     """How a cable from the headers is made; empty where the gripper gets its maker's."""
     own = own_cable(design)
-    if own.by_maker or not own.headers:
+    if own.by_maker:
         return ""
     return _text("own_cable", supply=_supply(design, own))
 

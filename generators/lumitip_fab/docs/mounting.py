@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from lumitip_fab.design import Design, Holder
-from lumitip_fab.design.frames import gripper_to_tool
-from lumitip_fab.docs.bolts import tightened
+from lumitip_fab.design.frames import gripper_to_tool, holder_edge_mm
+from lumitip_fab.docs.bolts import finger_bolts
 from lumitip_fab.docs.cable_ways import cable_ways
 from lumitip_fab.docs.flange import plugs
 from lumitip_fab.docs.steps import numbered
@@ -50,6 +50,15 @@ def _pictures(design: Design) -> Iterator[str]:
         yield _text("held")
 
 
+def _where(design: Design, holder: Holder) -> str:
+    """How far up the gripper it is clipped on; empty if it is for another body than that whose
+    length is known."""
+    if holder.name not in design.system.holders:
+        return ""
+    face = "the flange" if design.flanges else "where the gripper stands"
+    return _text("at_height", edge_mm=holder_edge_mm(holder, design.system), face=face)
+
+
 def _gripper_needs(design: Design) -> list[str]:
     """Of the controller's board, and tape for fingers whose cables end at it."""
     if design.holders:
@@ -78,8 +87,7 @@ def _gripper_work(design: Design) -> Iterator[str]:
             robot=listed(_to_robot(design, holder)),
             fingers=_to_fingers(design),
             loop_mm=holder.tie_loop_mm,
-            edge_mm=design.system.holder_edge_mm(holder.outer.length_mm),
-            face="the flange" if design.flanges else "where the gripper stands",
+            where=_where(design, holder),
         )
     if not design.holders and any(board.name == "breakout" for board in design.auxiliary_boards):
         yield _text("beside_gripper", mount=mount)
@@ -103,8 +111,7 @@ def _finger_work(design: Design) -> Iterator[str]:
         yield _text("measured_fingers", thickness_mm=design.stack.thickness_mm)
     own = _text("own_supply") * bool(design.flanges)
     yield _text("force_first", own=own, rated_n=design.strength.rated_force_n)
-    part = "interface" if design.interfaces else "backing"
-    tight = tightened(design, mount.bolt, mount.bolt_hole_mm, part, again=bool(design.flanges))
+    tight = finger_bolts(design)
     yield _text("screwed_on", bolts=len(mount.bolt_u_mm), mount=mount, tight=tight)
     frames = design.stack, mount, design.closing, design.system
     face = "the robot's flange" if design.flanges else "the gripper's own face"

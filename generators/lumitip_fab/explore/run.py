@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from lumitip_fab.config.automatic import AUTO
 from lumitip_fab.config.load import Input, load
 from lumitip_fab.config.parts import NAMED, NONE
 from lumitip_fab.errors import InputError, Problem
@@ -118,8 +119,9 @@ def without_price(config: Input, asked: Sequence[Axis]) -> list[Problem]:
     parts = {field: part for field, part in NAMED.items() if part in _PRICED}
     names: set[str] = set()
     for field, part in parts.items():
-        chosen = getattr(config.catalogue, part) if field in config.automatic else ()
-        names |= set(varied.get(field, chosen or (config.value(field),)))
+        left = (AUTO,) if field in config.automatic else (config.value(field),)
+        values = set(varied.get(field, left))
+        names |= (values - {AUTO}) | set(getattr(config.catalogue, part) if AUTO in values else ())
     return unpriced(config, config.catalogue.prices, names - {NONE})
 
 

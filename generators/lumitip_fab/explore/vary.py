@@ -3,6 +3,7 @@
 grid.pitch_mm=3:8                        as many values as `points`, evenly from 3 to 8
 grid.pitch_mm=3:8:0.5                    from 3 in steps of 0.5, 8 included
 mask.hole_mm=1.5,2,2.5                   these values
+board.track_mm=auto,0.15                 likewise, chosen by the derivation where it may be
 grid.columns=[[5, 4, 5], [4, 5, 6, 5]]   a TOML list of values
 """
 

@@ -1,6 +1,7 @@
 """Dimensions on a drawing sheet: rows of dimension lines that keep apart, with names."""
 
 from collections.abc import Sequence
+from operator import itemgetter
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -40,7 +41,7 @@ def dimension_rows(
         _draw(sheet, span, row, outward, upright, lines)
         for span, row, lines in zip(ordered, rows, crossing, strict=True)
     ]
-    for name, place, anchor in names:  # over the lines of all
+    for name, place, anchor in filter(itemgetter(0), names):  # over the lines of all
         write(sheet, place, name, anchor, upright)
 
 

@@ -4,6 +4,7 @@ import manifold3d
 import numpy as np
 
 from lumitip_fab.design import Holder, Mount, System
+from lumitip_fab.design.frames import holder_edge_mm
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.scenes.dimensions import dimension_rows
 from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, view, visible_lines
@@ -38,8 +39,8 @@ def mounted_view(groups: list[Group], holder: Holder, mount: Mount, system: Syst
     _measure(sheet, eye, system, holder, eye.seen(envelope.points_mm))
     at = {body.name: _left_corner(eye.seen(body.mesh.points_mm)) for body in bodies}
     named = {
-        "receiver.backing": ("Fingers", "closed"),
-        "gripper.envelope": (mount.title, f"its body, {system.confidence}"),
+        "receiver.backing": ("Fingers", "receiver and emitter"),
+        "gripper.envelope": (mount.title, "its body, as the design has it"),
         f"{holder.name}.board": ("Holder", "its board beside the stroke"),
         "flange.upper": ("Flange", "printed"),
         "coupling.body": ("Coupling", "on the robot"),
@@ -96,7 +97,7 @@ def _mesh(solid: manifold3d.Manifold) -> Mesh:
 
 def _measure(sheet: Sheet, eye: View, system: System, holder: Holder, body: Points) -> None:
     """From the plane that the gripper stands on to the holder's nearer edge, beside its body."""
-    edge_mm = system.holder_edge_mm(holder.outer.length_mm)
+    edge_mm = holder_edge_mm(holder, system)
     stands, edge = _on_axis(eye, system.gripper_z_mm, system.gripper_z_mm + edge_mm)[:, 1].tolist()
     side, right = float(body[:, 0].max()), float(sheet.high[0]) + _BESIDE_MM
     sheet.lines([np.array([(side, y), (right, y)]) for y in (stands, edge)], "leader")

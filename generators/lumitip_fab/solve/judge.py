@@ -84,14 +84,13 @@ class Job:
         return cls(config, changes, task.targets, reference, key)
 
 
-def exposure_of(task: Task, resolved: Resolved) -> float | None:
+def exposure_of(task: Task, reference: Reference, resolved: Resolved) -> float | None:
     """Exposure of a design against the reference of a task, see `drive`; `None` where it has other
     LEDs or photodetectors, whose light is not known.
 
     Raises:
         InputError: if the task's base is refused.
     """
-    reference = Reference.of(task)
     known = resolve(task.base if reference.with_fixed else task.written).config
     if any(known.value(name) != resolved.config.value(name) for name in WITHOUT_LIGHT):
         return None

@@ -37,7 +37,7 @@ def refine(task: Task, designs: Mapping[Point, Judged], judges: Judges, most: in
         judges: gives the designs at points.
         most: number of designs at which the refinement ends.
     """
-    numbers = [is_number(axis.values[0]) and len(axis.values) > 1 for axis in task.axes]
+    numbers = [all(map(is_number, a.values)) and len(a.values) > 1 for a in task.axes]
     moving = np.flatnonzero(numbers)
     if not moving.size:
         return

@@ -164,7 +164,7 @@ def _generations(
     from pymoo.problems.static import StaticProblem
 
     sizes = [len(axis.values) for axis in task.axes]
-    ordered = [is_number(axis.values[0]) for axis in task.axes]
+    ordered = [all(map(is_number, axis.values)) for axis in task.axes]
     names = [str(n) for n in range(len(sizes))]
     variables = {
         name: Integer(bounds=(0, n - 1)) if is_ordered else Choice(options=list(range(n)))

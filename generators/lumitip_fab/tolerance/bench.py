@@ -1,6 +1,6 @@
 """Errors of many built fingers: their frames, and the estimates of these, as numbers by finger."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -12,6 +12,7 @@ from lumitip.layout import Layout
 from lumitip.twin import Model, Twin
 from lumitip.twin.built import Lines, Rays
 from lumitip.twin.optics import FULL, values_of_drive
+from lumitip_fab.explore.accuracy import dimness
 from lumitip_fab.tolerance.draws import Draws, built
 from lumitip_fab.tolerance.estimate import Estimates, gross
 from lumitip_fab.tolerance.streams import Stream, generator
@@ -67,10 +68,8 @@ class Bench:
         """
         self._case, self._layout, self._model = case, case.layout, case.model
         self._rays = _rays(case)
-        self._empty = Twin(case.layout, case.model).empty
-        usual = Twin(case.layout, replace(case.model, gain=Model.gain)).empty
-        self._coarse = usual / self._empty
-        """How much larger noise and steps are in the light of this exposure, by cell."""
+        drawn = Twin(case.layout, case.model)
+        self._empty, self._dim = drawn.empty, dimness(drawn)
         self.lines = {"edge": lines(case, "edge", case.poses, number)} if case.edges else {}
         self.lines |= {
             f"cable {diameter_mm:g} mm": lines(case, "cable", case.poses, number, diameter_mm)
@@ -163,15 +162,15 @@ class Bench:
         values = {}
         for name, of in lines.items():
             read = values_of_drive(light.shares(of) * drive * pair.drift, self._model)
-            noise = self._coarse * self._noise[name]
+            noise = self._dim * self._noise[name]
             noisy = (read * (FULL / by) + noise for by in (self._empty, empty))
             values[name] = Frames(*(self._codes(one) for one in noisy))
         return values
 
     def _codes(self, values: Floats) -> Floats:
         """Whole steps of the voltage."""
-        steps = np.floor(np.clip(values, 0.0, FULL) / self._coarse)
-        return np.asarray(steps * self._coarse)
+        steps = np.floor(np.clip(values, 0.0, FULL) / self._dim)
+        return np.asarray(steps * self._dim)
 
 
 def _rms(missed: list[Floats], fingers: int) -> Floats:

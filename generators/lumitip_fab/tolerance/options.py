@@ -62,6 +62,8 @@ class Options:
     exposure: float | None = 1.0
     """LED current times pull-up, relative to the base of the goals file; `None` if it is not
     known, and then 1 is tried."""
+    against: str = ""
+    """What that is relative to."""
 
     def __post_init__(self) -> None:
         limits = [

@@ -20,6 +20,7 @@ from lumitip_fab.tolerance.study import LEAST_DRAWS
 
 _DOTS_PER_INCH = 150
 _SHOWN = 6  # tolerances in the terminal; the files have all
+_DIM = 0.5  # exposure that is much less than that of the base
 _FIGURES = ("position", "angle")
 _NO_INDICES = (
     f"No Sobol indices: they need {LEAST_DRAWS} draws or more. Use --fingers {2 * LEAST_DRAWS} or "
@@ -62,7 +63,7 @@ def print_tables(study: dict[str, Any], console: Console) -> None:
         soft_wrap=True,
     )
     if "exposure" in study:
-        console.print(_exposure_line(study["exposure"]), soft_wrap=True)
+        console.print(_exposure_line(study["exposure"], study["exposure_against"]), soft_wrap=True)
     console.print(mask_line(study["mask_shift"]), soft_wrap=True)
     if study["sobol_draws"]:
         console.print(_sensitive(study))
@@ -90,14 +91,21 @@ def _tried(study: dict[str, Any]) -> str:
     return "; ".join(tried)
 
 
-def _exposure_line(exposure: float | None) -> str:
+def _exposure_line(exposure: float | None, against: str) -> str:
     """LED current times pull-up of the design, against that of the goals file's base."""
     if exposure is None:
         return (
-            "Exposure: not known, since LED or photodetector are not those of the goals file's "
-            "base; taken as its own."
+            f"Exposure: not known, since LED or photodetector are not those of {against}; 1 was "
+            "taken."
         )
-    return f"Exposure: {exposure:.2f} times that of the goals file's base."
+    line = f"Exposure: LED current times pull-up is {exposure:.2f} times that of {against}"
+    if exposure > _DIM:
+        return f"{line}."
+    return (
+        f"{line}, which is taken as well exposed: noise counts {1 / exposure:.1f} times as much. "
+        "If this design's pull-up was chosen for the light of its cells, name goals with a base "
+        "of the same circuit."
+    )
 
 
 def goals_text(goals: dict[str, float]) -> str:

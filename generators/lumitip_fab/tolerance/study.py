@@ -98,7 +98,11 @@ def study(
             {"gap_mm": grasp.gap_mm, "edges": grasp.edges, "cables_mm": list(grasp.cables_mm)}
             for grasp in options.grasps
         ],
-        **({"exposure": options.exposure} if options.file else {}),
+        **(
+            {"exposure": options.exposure, "exposure_against": options.against}
+            if options.file
+            else {}
+        ),
         "fingers": options.fingers,
         "poses": {"edge": options.poses, "cable": options.poses, "sets": POSE_SETS},
         "seed": options.seed,

@@ -289,7 +289,7 @@ def _cells(judged: Verdict, layout: Layout) -> str:
 
 
 def _table(deviations: dict[str, Any]) -> Iterator[str]:
-    yield "<table><tr><th>deviation<th>measured<th>limit, less half of ±</tr>"
+    yield "<table><tr><th>deviation<th>measured<th>limit</tr>"
     for of in deviations.values():
         unit = {"deg": "°", "mm": " mm"}.get(of["unit"], "")
         limit = "not judged" if of["limit"] is None else f"{of['limit']:g}{unit}"
@@ -297,4 +297,4 @@ def _table(deviations: dict[str, Any]) -> Iterator[str]:
             f'<tr><td>{html.escape(of["title"])}<td class="n">{of["value"]:+.2f} ± '
             f'{of["sd"]:.2f}{unit}<td class="n">{limit}</tr>'
         )
-    yield "</table>"
+    yield "</table><p>What the gauge measures must be within its limit by half of ±.</p>"

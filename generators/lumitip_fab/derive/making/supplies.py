@@ -23,10 +23,10 @@ from lumitip_fab.design import (
     Point,
     Stack,
 )
-from lumitip_fab.design.board_rules import COMMON_MM
+from lumitip_fab.design.board_rules import common_supply_mm
 from lumitip_fab.design.boards import GLUE_FILM_MM
 from lumitip_fab.design.cabling import plugged_headers
-from lumitip_fab.design.gripper_cable import gripper_cable
+from lumitip_fab.design.gripper_cable import GripperCable, gripper_cable
 
 TAPE_MARGIN_MM = 5.0
 """Of the tape beyond a window, on each side."""
@@ -137,19 +137,28 @@ def _plugged(config: Input, of: Assembled) -> Iterator[Used]:
     """A mating connector for each header of the flange that a cable ends at, and the gripper's own
     cable: from there, where its other plug and its current are the gripper's, or its maker's."""
     plugs = plugged_headers(of.cabling.cables, of.auxiliary_boards)
-    track_mm = max(config.parameters.board.supply_track_mm, COMMON_MM["track_mm"])
-    own = gripper_cable(of.auxiliary_boards, of.cabling.cables, of.mount.supply_a, track_mm)
-    lines = () if own.by_maker else own.headers
+    own = _gripper_cable(config, of)
+    lines = own.headers if own and not own.by_maker else ()
     headers, mate = sorted({*plugs, *lines}), config.parts.flange.header.mate
     if mate and headers:
         yield Used(mate, f"plug at {', '.join(headers)} of the flange", len(headers), "piece")
-    if own.by_maker:
+    if own and own.by_maker:
         yield Used("gripper cable by maker", "past the flange, to its own supply", 1, "piece")
     if lines:
         where = f"from {', '.join(lines)} of the flange: its maker's, or wires for its current"
         yield Used("gripper cable", where, 1, "piece")
-    if own.feeds:
+    if own and own.feeds and lines:
         yield Used("gripper fuse", "supply wire of the gripper's cable", 1, "piece")
+
+
+def _gripper_cable(config: Input, of: Assembled) -> GripperCable | None:
+    """The gripper's cable, where it has a flange."""
+    if not any(board.name == "flange" for board in of.auxiliary_boards):
+        return None
+    track_mm = common_supply_mm(config.parameters.board.supply_track_mm)
+    contact_a = config.parts.flange.contacts.contact_a
+    cables, supply_a = of.cabling.cables, of.mount.supply_a
+    return gripper_cable(of.auxiliary_boards, cables, supply_a, track_mm, contact_a)
 
 
 def _cast(config: Input, of: Assembled) -> Iterator[Used]:

@@ -97,6 +97,7 @@ def derive_flange_body(
         contacts_z_mm=-coupling.contacts_depth_mm,
         contacts_mm=pogo.height_mm,
         stroke_mm=pogo.stroke_mm,
+        contact_a=pogo.contact_a,
         openings=_openings(headers, board_at, coupling.face_mm / 2),
         screws=tuple((x + board_at[0], y + board_at[1]) for x, y in auxiliary.holes),
         screw=BOARD_SCREW,
