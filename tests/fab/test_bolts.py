@@ -15,7 +15,7 @@ PETG_MPA = 40.0
 
 @pytest.mark.parametrize(
     ("preset", "head_mm", "hole_mm", "thread_mm", "torque_nm", "pushed_kg"),
-    [("published", 8.5, 5.3, 5.0, "0.69", "2.8"), ("franka_hand", 7.0, 4.3, 4.0, "0.38", "1.9")],
+    [("published", 8.5, 5.3, 5.0, "0.69", "2.8"), ("robotiq_2f140", 8.5, 5.3, 5.0, "0.69", "2.8")],
 )
 def test_the_torque_is_that_of_half_the_plastic_s_strength(
     preset: str,
