@@ -104,6 +104,19 @@ def test_another_pressure_is_tried_where_nets_find_no_room(
     assert second.iterations > routing.iterations
 
 
+def test_a_board_on_which_most_nets_fight_is_refused_early(
+    crossing: tuple[Placement, Routing], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    placement, _ = crossing
+    none = router.Pressure(1.0, 0.0)
+    monkeypatch.setattr(router, "ATTEMPTS", ((none, True), (none, False), (none, False)))
+    with pytest.raises(BuildError, match=r"not routed after (1[89]\d|[2-9]\d\d) rounds"):
+        route(placement)
+    monkeypatch.setattr(router, "HOPELESS_NETS", 0)
+    with pytest.raises(BuildError, match="not routed after 90 rounds: nets still share room"):
+        route(placement)
+
+
 def test_nets_are_routed_in_the_other_order_too(monkeypatch: pytest.MonkeyPatch) -> None:
     backwards = [attempt for attempt in router.ATTEMPTS if attempt[0].backwards]
     assert backwards

@@ -112,9 +112,10 @@ FEW = 3  # nets that still fight, on a small board
 STUCK_PRICE = 1000.0
 STUCK_WIDER_MM = 2.0
 PATIENCE = 60  # rounds without progress, before the router gives up
-HOPELESS, HOPELESS_SHARE = 45, 1 / 3
-"""Round of a try after which no more than this share of the nets may fight. On boards that were
-routed in the end it was 3 to 22 %, on two that were not after many minutes 43 and 58 %."""
+HOPELESS, HOPELESS_SHARE, HOPELESS_NETS = 45, 1 / 3, 30
+"""Round of a try in which no more than this share of the nets may fight, or so many of them. On
+boards that were routed in the end it was 3 to 22 %, on two that were not after many minutes 43 and
+58 %. The tries of small boards take seconds."""
 
 
 def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int, dict[str, Ints]]:
@@ -142,7 +143,7 @@ def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int
             fewest, best = count, turn
         if not fought or turn - best > PATIENCE or turn == pressure.rounds:
             return turn, fought
-        if turn == HOPELESS and len(fought) > HOPELESS_SHARE * len(nets):
+        if turn == HOPELESS and len(fought) > max(HOPELESS_NETS, HOPELESS_SHARE * len(nets)):
             return turn, fought
         state.turn += 1
         late = turn >= LATE
