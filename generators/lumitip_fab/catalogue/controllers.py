@@ -52,7 +52,7 @@ class Strip(Ordered, Entry):
     stroke_mm: float = Field(default=0, ge=0, le=10)
     """Travel of spring contacts; 0 for others."""
     contact_a: float = Field(default=0, ge=0, le=100)
-    """Largest current of a spring contact; 0 where it is not known."""
+    """Largest current of one; 0 where it is not known."""
     hand_soldered: bool = False
     """Whether it is soldered on by hand, and so in no PCB fab's bill or placement list."""
     shroud: Shroud | None = None
@@ -104,15 +104,13 @@ class Leaded(Ordered, Entry):
     lead_pad_mm: tuple[Length, Length]
     """Pad of one lead: along the lead, across it."""
     names: tuple[PinName, ...] = Field(min_length=3, max_length=16)
-    """Name of each lead, counter-clockwise from lead 1; of an odd number the upper row has one
-    less, in its middle."""
+    """Counter-clockwise from lead 1; of an odd number the upper row has one less, in its middle."""
 
 
 class Regulator(Leaded):
     """A step-down switching regulator with a fixed output: FB, EN, VIN, GND, SW and BST."""
 
     output_v: float = Field(gt=0, le=24)
-    """Output voltage."""
     input_v: Voltages
     """Least and greatest input voltage."""
     output_a: float = Field(gt=0, le=20)
