@@ -30,13 +30,13 @@ def test_the_torque_is_that_of_half_the_plastic_s_strength(
     assert 0 <= 0.2 * pull_n * thread_mm / 1000 - float(torque_nm) < 0.01
     assert 0 <= 0.2 * pull_n / 5 / 9.81 - float(pushed_kg) < 0.1, "five threads from the axis"
     design = written({}, preset)
-    found = re.findall(r"to ([\d.]+) N m: .*?the weight of ([\d.]+) kg", steps(design))
+    found = re.findall(r"to ([\d.]+) N m\b.*?the weight of ([\d.]+) kg", steps(design))
     assert found == [(torque_nm, pushed_kg)] * (1 + len(design.flanges))
 
 
 def test_a_thin_land_round_a_sleeve_bears_less(written: Callable[..., Design]) -> None:
     """Half of what the head's seat bears would be 0.38 N m."""
-    assert "tighten it to 0.35 N m" in steps(written({}, "wsg50"))
+    assert "Tighten them to 0.35 N m" in steps(written({}, "wsg50"))
 
 
 def test_a_load_of_more_than_half_leaves_less_to_the_torque() -> None:

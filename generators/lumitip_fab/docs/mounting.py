@@ -18,7 +18,8 @@ def mounting_steps(design: Design) -> Iterator[str]:
     """The controller's board and the gripper, then the fingers."""
     yield _text(
         "gripper_step",
-        pictures="\n".join(_pictures(design)),
+        mounted=_text("where_held" if design.system.holders else "not_held"),
+        held=_text("held") * bool(design.holders),
         title="Mount the controller" if design.holders else "Try the gripper",
         work=numbered(_gripper_work(design)),
         needs=", ".join(["the keys and screwdrivers", *_gripper_needs(design)]),
@@ -41,13 +42,6 @@ def mounting_steps(design: Design) -> Iterator[str]:
         ways=cable_ways(design),
         closed=_text("touch_first" if design.mount.tilt_deg else "parallel"),
     )
-
-
-def _pictures(design: Design) -> Iterator[str]:
-    """The holder where it is on the gripper, and its ties."""
-    yield _text("where_held" if design.system.holders else "not_held")
-    if design.holders:
-        yield _text("held")
 
 
 def _where(design: Design, holder: Holder) -> str:

@@ -13,7 +13,7 @@ from lumitip_fab.scenes.system_view import Drawn, painted, shown, tint
 
 AZIMUTH_DEG, ELEVATION_DEG = 50.0, 20.0
 _FINGERS = ("emitter", "receiver")
-_BESIDE_MM, _WORDS_MM, _FIGURE_MM, _WORDS = 10.0, 112.0, 42.0, 2.5
+_BESIDE_MM, _WORDS_MM, _FIGURE_MM, _WORDS = 10.0, 118.0, 46.0, 2.75
 
 
 def mounted_view(groups: list[Group], holder: Holder, mount: Mount, system: System) -> str:
@@ -40,8 +40,8 @@ def mounted_view(groups: list[Group], holder: Holder, mount: Mount, system: Syst
     at = {body.name: _left_corner(eye.seen(body.mesh.points_mm)) for body in bodies}
     named = {
         "receiver.backing": ("Fingers", "receiver and emitter"),
-        "gripper.envelope": (mount.title, "its body, as the design has it"),
-        f"{holder.name}.board": ("Holder", "its board beside the stroke"),
+        "gripper.envelope": (mount.title, "as the design has it"),
+        f"{holder.name}.board": ("Holder", "board beside the stroke"),
         "flange.upper": ("Flange", "printed"),
         "coupling.body": ("Coupling", "on the robot"),
     }
