@@ -4,7 +4,7 @@ import manifold3d
 import numpy as np
 
 from lumitip_fab.design import Holder, Mount, System
-from lumitip_fab.design.frames import holder_edge_mm
+from lumitip_fab.design.frames import holder_edge_mm, translation
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.scenes.dimensions import dimension_rows
 from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, view, visible_lines
@@ -13,6 +13,7 @@ from lumitip_fab.scenes.system_view import Drawn, painted, shown, tint
 
 AZIMUTH_DEG, ELEVATION_DEG = 50.0, 20.0
 _FINGERS = ("emitter", "receiver")
+_BARE_MM = 35.0
 _BESIDE_MM, _WORDS_MM, _FIGURE_MM, _WORDS = 10.0, 118.0, 46.0, 2.75
 
 
@@ -26,11 +27,11 @@ def mounted_view(groups: list[Group], holder: Holder, mount: Mount, system: Syst
         system: for the planes along the tool's axis.
     """
     eye = view(AZIMUTH_DEG, ELEVATION_DEG)
-    bodies = _ordered(groups, holder, eye)
+    bodies = _ordered(groups, holder, eye, _nearer_mm(system))
     meshes = [body.mesh for body in bodies]
     sheet = Sheet(words_scale=_WORDS)
-    ends = (system.gripper_z_mm + system.length_mm, system.gripper_z_mm + system.reach_mm)
-    sheet.lines([_on_axis(eye, *ends)], "axis")
+    top_mm = system.gripper_z_mm + system.length_mm
+    sheet.lines([_on_axis(eye, top_mm, top_mm + _bare_mm(system) - _nearer_mm(system))], "axis")
     for body, lines in zip(bodies, visible_lines(meshes, eye), strict=True):
         with sheet.group(body.name):
             sheet.area(silhouette(body.mesh, eye), "body", tint(body.name))
@@ -52,7 +53,17 @@ def mounted_view(groups: list[Group], holder: Holder, mount: Mount, system: Syst
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
 
 
-def _ordered(groups: list[Group], holder: Holder, eye: View) -> list[Drawn]:
+def _bare_mm(system: System) -> float:
+    """From the gripper's body to the fingers, where its own jaws are, which nobody drew."""
+    return system.reach_mm - system.length_mm
+
+
+def _nearer_mm(system: System) -> float:
+    """So much nearer the fingers are drawn: long jaws would leave the page empty there."""
+    return max(0.0, _bare_mm(system) - _BARE_MM)
+
+
+def _ordered(groups: list[Group], holder: Holder, eye: View, nearer_mm: float) -> list[Drawn]:
     """Bodies in the tool frame, from the farthest to the nearest: the stack from the robot up with
     the holder's arms behind the gripper before it, the fingers, the holder's tray and board."""
     stack: list[Drawn] = []
@@ -66,7 +77,8 @@ def _ordered(groups: list[Group], holder: Holder, eye: View) -> list[Drawn]:
             if shown(group.name, body.name)
         ]
         if group.name in _FINGERS:
-            fingers += drawn
+            by_mm = translation(0.0, 0.0, -nearer_mm)
+            fingers += [Drawn(d.group, d.name, d.mesh.moved(by_mm)) for d in drawn]
         elif group.name == holder.name:
             far, near = _halves(drawn[0].mesh, eye)
             behind = Drawn(group.name, f"{holder.name}.far", far)
