@@ -109,7 +109,9 @@ def test_a_board_on_which_most_nets_fight_is_refused_early(
 ) -> None:
     placement, _ = crossing
     none = router.Pressure(1.0, 0.0)
-    monkeypatch.setattr(router, "ATTEMPTS", ((none, True), (none, False), (none, False)))
+    monkeypatch.setattr(
+        router, "ATTEMPTS", ((none, True), (none, True), (none, False), (none, False))
+    )
     with pytest.raises(BuildError, match=r"not routed after (1[89]\d|[2-9]\d\d) rounds"):
         route(placement)
     monkeypatch.setattr(router, "HOPELESS_NETS", 0)

@@ -176,14 +176,16 @@ def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int
 def negotiate_until_free(state: State, nets: list[Wanted]) -> tuple[int, dict[str, Ints]]:
     """`negotiate` under one pressure after the other, until no net is in the way of another.
 
-    The later tries leave out the vias beside capacitors. If one of these ends where too many nets
-    fight, there is no room under any pressure.
+    The later tries leave out the vias beside capacitors. Where too many nets fight in one with
+    them, these come next; where too many do without them, there is no room under any pressure.
 
     Returns:
         As `negotiate`: the rounds of all tries, and the fight of the try that came nearest.
     """
-    rounds, nearest = 0, None
+    rounds, nearest, crowded = 0, None, False
     for pressure, with_vias in ATTEMPTS:
+        if with_vias and crowded:
+            continue
         state.clear()
         some = nets if with_vias else [net for net in nets if not net.places.size]
         ordered = some[::-1] if pressure.backwards else some
@@ -191,9 +193,10 @@ def negotiate_until_free(state: State, nets: list[Wanted]) -> tuple[int, dict[st
         rounds += turns
         if not fought:
             return rounds, {}
+        crowded = turns == HOPELESS
         if not with_vias:  # its nets are those that must have room
             nearest = min(nearest or fought, fought, key=len)
-            if turns == HOPELESS:
+            if crowded:
                 break
     return rounds, nearest or {}
 
