@@ -177,7 +177,8 @@ def negotiate_until_free(state: State, nets: list[Wanted]) -> tuple[int, dict[st
     """`negotiate` under one pressure after the other, until no net is in the way of another.
 
     The later tries leave out the vias beside capacitors. Where too many nets fight in one with
-    them, these come next; where too many do without them, there is no room under any pressure.
+    them, these come next; where too many do without them, and no try came nearer, there is no room
+    under any pressure.
 
     Returns:
         As `negotiate`: the rounds of all tries, and the fight of the try that came nearest.
@@ -196,7 +197,7 @@ def negotiate_until_free(state: State, nets: list[Wanted]) -> tuple[int, dict[st
         crowded = turns == HOPELESS
         if not with_vias:  # its nets are those that must have room
             nearest = min(nearest or fought, fought, key=len)
-            if crowded:
+            if crowded and nearest is fought:
                 break
     return rounds, nearest or {}
 
