@@ -147,7 +147,7 @@ def _plugged(config: Input, of: Assembled) -> Iterator[Used]:
     if lines:
         where = f"from {', '.join(lines)} of the flange: its maker's, or wires for its current"
         yield Used("gripper cable", where, 1, "piece")
-    if own and own.feeds and lines:
+    if own and own.feeds:
         yield Used("gripper fuse", "supply wire of the gripper's cable", 1, "piece")
 
 
