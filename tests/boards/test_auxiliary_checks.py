@@ -162,8 +162,9 @@ def reference_twice(text: str) -> str:
     return in_part(text, "H2", 'reference "H2"', 'reference "H1"')
 
 
-ELSEWHERE = {"feed", "probe_width", "probe_room", "title_block", "wire_order"}
-"""Damaged in test_feed.py, test_probes.py, test_board_checks.py and test_wire_order.py."""
+ELSEWHERE = {"feed", "probe_width", "probe_room", "title_block", "warming", "wire_order"}
+"""Damaged in test_feed.py, test_probes.py, test_board_checks.py, test_flange_checks.py and
+test_wire_order.py."""
 DAMAGES: dict[Damage, set[str]] = {
     part_moved: {"lands", "clearance"},  # the pour is as near as it may be
     part_added: {"other_parts"},

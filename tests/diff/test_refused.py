@@ -59,7 +59,7 @@ DAMAGES: dict[str, tuple[Callable[[Path], None], str]] = {
     "column": (_edit("bom.csv", "quantity", "number"), "no row with quantity"),
     "no rows": (lambda out: (out / "order.csv").write_text("item,price\n"), "no row with price"),
     "total": (_edit("bom.csv", "total,", "sum,"), "bom.csv: cannot be read (no total)"),
-    "endless": (_edit("wiring/cables.csv", ",250,", ",inf,"), "length_mm is inf"),
+    "endless": (_edit("wiring/cables.csv", ",260,", ",inf,"), "length_mm is inf"),
     "facts": (_edit("manifest.json", '"mix_ml"', '"mix"'), "manifest.json: cannot be read"),
     "frame": (_frame, "to_sensor is no rotation"),
     "board": (_cut("boards/flange/flange.kicad_pcb"), "flange.kicad_pcb: cannot be read"),
