@@ -15,6 +15,7 @@ from lumitip.estimation.estimator import DIAMETER_MM
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Cable, HalfPlane, Model, Twin
+from lumitip.twin.noise import dimness
 from lumitip.twin.optics import GAP_MM
 
 KINDS: dict[str, type[HalfPlane | Cable]] = {"edge": HalfPlane, "cable": Cable}
@@ -109,13 +110,6 @@ def accuracy(layout: Layout, sample: Sample) -> dict[str, float]:
         "gross_percent": 100.0 * float(gross(both).mean()),
         "bound_mm": rms(np.array(bound)),
     }
-
-
-def dimness(twin: Twin) -> Floats:
-    """How much larger the noise of calibrated values is than with the default gain of `Model`,
-    shape `(cells,)`: dim cells are multiplied by more in the calibration."""
-    usual = Twin(twin.layout, twin.model.changed(gain=Model.gain))
-    return usual.empty / twin.empty
 
 
 def gross(misses: Floats) -> NDArray[np.bool_]:

@@ -17,7 +17,7 @@ from scipy.stats import qmc
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Model, Twin
-from lumitip_fab.explore.accuracy import dimness
+from lumitip.twin.noise import dimness
 
 COUNTS = float(np.hypot(1.5, np.sqrt(1.0 / 12.0)))
 """Standard deviation of a value: noise, and the rounding to whole counts (counts of 255)."""

@@ -11,8 +11,8 @@ from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Model, Twin
 from lumitip.twin.built import Lines, Rays
+from lumitip.twin.noise import dimness
 from lumitip.twin.optics import FULL, values_of_drive
-from lumitip_fab.explore.accuracy import dimness
 from lumitip_fab.tolerance.draws import Draws, built
 from lumitip_fab.tolerance.estimate import Estimates, gross
 from lumitip_fab.tolerance.streams import Stream, generator

@@ -158,11 +158,11 @@ class Session:
     async def _wait(self) -> None:
         """Wait for a change, an acknowledgement, or the next status."""
         left = self._status_due - time.monotonic()
-        try:
-            await asyncio.wait_for(self._awake.wait(), _STATUS_S if left <= 0 else left)
-        except TimeoutError:
-            return
-        self._awake.clear()
+        # Not by `wait_for`: until Python 3.12 it drops a cancellation that comes with a change.
+        with suppress(TimeoutError):
+            async with asyncio.timeout(_STATUS_S if left <= 0 else left):
+                await self._awake.wait()
+            self._awake.clear()
 
     def _match(self) -> None:
         """Keep one feed for each finger."""

@@ -178,6 +178,37 @@ def test_a_browser_that_left_before_its_last_words_are_read_leaves_quietly(
     asyncio.run(main())
 
 
+@pytest.mark.parametrize("rounds", range(5))
+def test_a_browser_that_leaves_just_after_an_acknowledgement_ends_its_session(
+    tmp_path: Path, rounds: int
+) -> None:
+    """`asyncio.wait_for` of Python 3.11 dropped the cancellation, and the session stayed."""
+
+    async def main() -> None:
+        said = iter(
+            [
+                {"type": "websocket.connect"},
+                {"type": "websocket.receive", "text": "{}"},
+                {"type": "websocket.receive", "text": "{}"},
+                {"type": "websocket.disconnect", "code": 1001},
+            ]
+        )
+
+        async def receive() -> dict[str, Any]:
+            for _ in range(rounds):
+                await asyncio.sleep(0)
+            return next(said)
+
+        async def send(_: dict[str, Any]) -> None:
+            return
+
+        websocket = WebSocket({"type": "websocket"}, receive, send)
+        await websocket.accept()
+        await asyncio.wait_for(Session(websocket, FingerRegistry((), tmp_path)).run(), 10.0)
+
+    asyncio.run(main())
+
+
 NONSENSE = (
     "",
     "[]",
