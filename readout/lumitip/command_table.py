@@ -76,4 +76,6 @@ def _add_arguments(parser: Any, arguments: list[Any], shared: dict[str, list[Any
             values = dict(argument)
             if "type" in values:
                 values["type"] = _TYPES[values["type"]]
+            if isinstance(values.get("metavar"), list):
+                values["metavar"] = tuple(values["metavar"])
             parser.add_argument(values.pop("name"), **values)

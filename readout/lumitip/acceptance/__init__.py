@@ -6,9 +6,11 @@ response   values that fingers with some deviations read of the gauge
 spread     how single parts, boards and drift change them
 fit        the deviations that explain the measured values
 places     swapped cells, from a sheet that moves
+stage      how exactly the edge of a sheet is found that a positioning stage moves
 findings   limits of what is judged
 cells      findings of single cells
 fingers    findings of the fingers as a whole
 verdict    the judge
-report     JSON and HTML
+page       the report as HTML
+report     its files
 """

@@ -50,8 +50,9 @@ class Places:
             layout: the cells.
             gap_mm: between the skins.
         """
-        self._estimate = PoseEstimator(layout, gap_mm=gap_mm).prepare("edge")
-        self._twin = Twin(layout, self._estimate.model)
+        self.estimate = PoseEstimator(layout, gap_mm=gap_mm).prepare("edge")
+        """Of the edge of the sheet."""
+        self._twin = Twin(layout, self.estimate.model)
 
     def __call__(self, values: Floats, usable: Mask) -> "Seen":
         """Compare each channel with the light at each place.
@@ -92,7 +93,7 @@ class Places:
         """Frames with an edge, and the light that is expected of it."""
         every = max(1, len(values) // MOST_FRAMES)
         for row in values[::every]:
-            found = self._estimate(np.where(trusted, row, np.nan), "edge")
+            found = self.estimate(np.where(trusted, row, np.nan), "edge")
             if not np.isfinite(found.offset_mm):
                 continue
             sides = self._twin.edges(

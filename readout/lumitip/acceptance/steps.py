@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from lumitip.acceptance.stage import Traverse
 from lumitip.frame import Values
 
 
@@ -20,3 +21,5 @@ class Frames:
     """The sheet moved over all cells, in all directions."""
     gauge: tuple[Values, ...]
     """Each placement of the gauge."""
+    traverses: tuple[Traverse, ...] = ()
+    """Of a stage that moved the sheet; their frames are those of `moving`."""

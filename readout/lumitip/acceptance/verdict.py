@@ -1,7 +1,7 @@
 """Whether a pair of fingers is accepted, and what is wrong with one that is not."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,7 @@ from lumitip.acceptance.fit import Fitted, fit
 from lumitip.acceptance.gauge import Gauge, GaugeError
 from lumitip.acceptance.places import Places
 from lumitip.acceptance.response import Response, named
+from lumitip.acceptance.stage import Trace, trace
 from lumitip.acceptance.steps import Frames
 from lumitip.errors import ArgumentError
 from lumitip.frame import Values
@@ -45,6 +46,8 @@ class Verdict:
     """The same behind sheet metal."""
     unseen: str | None
     """Why swapped cells could not be found, for the builder; `None` if they could."""
+    traces: tuple[Trace, ...] = ()
+    """How exactly the edge was found that a stage moved."""
 
     @property
     def accepted(self) -> bool:
@@ -130,6 +133,7 @@ class Judge:
             level(frames.empty),
             level(frames.sheet),
             places.unseen,
+            tuple(self._traces(frames, usable)),
         )
 
     def unseen(self, empty: Values, sheet: Values, moving: Values) -> str | None:
@@ -145,6 +149,12 @@ class Judge:
         values = np.array([_calibrated(level(part), frames) for part in frames.gauge])
         empty = level(frames.empty).astype(np.float64)
         return fit(self._response, values, empty, usable, thicker_mm)
+
+    def _traces(self, frames: Frames, usable: Mask) -> Iterator[Trace]:
+        for traverse in frames.traverses:
+            light = traverse.light.mean(axis=1)
+            values = np.where(usable, _calibrated(light, frames), np.nan)
+            yield trace(traverse, values, self._layout, self._places.estimate)
 
     def _usable(self, findings: list[Finding]) -> Mask:
         """Cells without a finding, shape `(cells,)`."""

@@ -1,6 +1,7 @@
 """`lumitip accept`: a builder's protocol for a finished pair of fingers, and its report."""
 
 import argparse
+import math
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,10 +12,12 @@ import numpy as np
 
 from lumitip.acceptance.gauge import Gauge, Placement
 from lumitip.acceptance.report import Circumstances, mean_deviations, prepare, write
+from lumitip.acceptance.stage import Trace, Traverse
 from lumitip.acceptance.steps import Frames
 from lumitip.acceptance.verdict import Judge, Verdict
 from lumitip.calibration import Calibration
 from lumitip.commands.common import open_fingertip
+from lumitip.commands.stage import Stage, opened
 from lumitip.errors import LumitipError
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Frame, Values, complement
@@ -46,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
     """
     gauge, thicker_mm = Gauge.load(options.gauge), _thicker_mm(options.thicker_mm)
     began = datetime.now().astimezone().isoformat(timespec="seconds")
-    with open_fingertip(options, calibrated=False) as tip:
+    with opened(options.stage) as stage, open_fingertip(options, calibrated=False) as tip:
         layout, device_id = tip.layout, tip.device_id
         judge = Judge(layout, gauge)
         reference = None
@@ -55,10 +58,11 @@ def run(options: argparse.Namespace) -> int:
         with _writing(options.out):
             prepare(options.out)
         try:
-            frames = _protocol(tip, gauge, judge, options)
+            frames = _protocol(tip, gauge, judge, options, stage)
             judged = judge(frames, reference, thicker_mm)
+            named = versions() | ({"printer": stage.printer.firmware} if stage else {})
             circumstances = Circumstances(
-                device_id, began, gauge.sha256, versions(), reference, thicker_mm
+                device_id, began, gauge.sha256, named, reference, thicker_mm
             )
         except KeyboardInterrupt:
             print("\nended before the verdict: no report and no reference is saved", flush=True)
@@ -88,7 +92,13 @@ def _writing(folder: Path) -> Iterator[None]:
         ) from error
 
 
-def _protocol(tip: Fingertip, gauge: Gauge, judge: Judge, options: argparse.Namespace) -> Frames:
+def _protocol(
+    tip: Fingertip,
+    gauge: Gauge,
+    judge: Judge,
+    options: argparse.Namespace,
+    stage: Stage | None,
+) -> Frames:
     steps = 3 + len(gauge.placements)
     print(f"{tip.device_id}: {steps} steps; the gripper stays where step 1 leaves it")
 
@@ -96,17 +106,26 @@ def _protocol(tip: Fingertip, gauge: Gauge, judge: Judge, options: argparse.Name
         _ask(f"{number} of {steps}: {text}")
         return _frames(tip, options.timeout, STEADY)
 
+    def moved() -> tuple[Values, tuple[Traverse, ...]]:
+        def ask(text: str) -> None:
+            _ask(f"3 of {steps}: {text}")
+
+        if stage is None:
+            ask(_MOVING.format(seconds=options.seconds))
+            return _frames(tip, options.timeout, _LEAST_MOVING, options.seconds), ()
+        parts = tuple(stage.traverses(tip, options.timeout, ask))
+        return np.concatenate([part.light.reshape(-1, len(tip.layout)) for part in parts]), parts
+
     empty, sheet = steady(1, _EMPTY), steady(2, _SHEET)
     for left in reversed(range(_TRIES)):
-        _ask(f"3 of {steps}: " + _MOVING.format(seconds=options.seconds))
-        moving = _frames(tip, options.timeout, _LEAST_MOVING, options.seconds)
+        moving, parts = moved()
         unseen = judge.unseen(empty, sheet, moving)
         if unseen is None:
             break
         # Fingers with many faults never show it: they get their verdict without.
         print(f"  {'once more' if left else 'going on without'}: {unseen}")
-    parts = [steady(4 + n, _put(of)) for n, of in enumerate(gauge.placements)]
-    return Frames(empty, sheet, moving, tuple(parts))
+    on_gauge = [steady(4 + n, _put(of)) for n, of in enumerate(gauge.placements)]
+    return Frames(empty, sheet, moving, tuple(on_gauge), parts)
 
 
 def _thicker_mm(values: list[float] | None) -> tuple[float, float] | None:
@@ -153,4 +172,15 @@ def _print(judged: Verdict) -> None:
         print(f"  {judged.unseen}")
     if judged.deviations:
         print(f"  differences from the twin: {judged.misfit:.1f} of 255 rms")
+    for of in judged.traces:
+        print(f"  the edge along {of.direction}: {_exactness(of)}")
     print("ACCEPTED" if judged.accepted else "NOT accepted")
+
+
+def _exactness(of: Trace) -> str:
+    if math.isnan(of.error_mm):
+        return "not found at enough places over the cells"
+    missed = f", {of.missed} not found" if of.missed else ""
+    return (
+        f"error {of.error_mm:.2f} mm rms, worst {of.worst_mm:.2f} mm, at {of.places} places{missed}"
+    )

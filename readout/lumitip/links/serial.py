@@ -31,10 +31,10 @@ try:
 except ModuleNotFoundError as missing:
     raise errors.MissingExtra("serial", "serial://") from missing
 
-# Exceptions of pyserial when the port disappears.
-_GONE: tuple[type[Exception], ...] = (OSError, TypeError)
+GONE: tuple[type[Exception], ...] = (OSError, TypeError)
+"""Exceptions of pyserial when the port disappears."""
 if importlib.util.find_spec("termios"):  # not on Windows
-    _GONE += (importlib.import_module("termios").error,)
+    GONE += (importlib.import_module("termios").error,)
 _WAIT_S = 0.2  # timeout of a read, so that `stop` is noticed
 _MOST_BYTES = 1 << 17  # more than the longest packet
 _PIECES = re.compile(rb"[^\0]*\0|[^\0]+")
@@ -66,11 +66,11 @@ class SerialLink(ThreadedLink):
     def _session(self, connected: Callable[[str], None]) -> None:
         port = self._port_now()
         try:
-            with serial.Serial(port, self._baud, timeout=_WAIT_S, exclusive=True) as line:
+            with opened(port, self._baud) as line:
                 connected(f"{self.device_id} on {port}")
                 self._read(line)
-        except _GONE as error:
-            raise _port_error(port, error) from error
+        except GONE as error:
+            raise port_error(port, error) from error
 
     def _read(self, line: Any) -> None:
         decoder = StreamDecoder(len(self.layout), mid_stream=True)
@@ -126,7 +126,7 @@ def make(url: Url, layout: Layout, any_design: bool) -> SerialLink:  # noqa: ARG
         DeviceNotFound: if the address has no port and there is none.
         AmbiguousDevice: if the address has no port and there are several.
     """
-    return SerialLink(layout, *_line(url))
+    return SerialLink(layout, *line_of(url))
 
 
 def identify(url: Url, timeout_s: float | None) -> Identity:
@@ -136,11 +136,11 @@ def identify(url: Url, timeout_s: float | None) -> Identity:
         UrlError: as `make`.
         LinkError: if the port cannot be opened, or no packet comes in time.
     """
-    port, baud = _line(url)
+    port, baud = line_of(url)
     until = time.monotonic() + (math.inf if timeout_s is None else timeout_s)
     waiting = b""
     try:
-        with serial.Serial(port, baud, timeout=_WAIT_S, exclusive=True) as line:
+        with opened(port, baud) as line:
             while time.monotonic() < until:
                 waiting += line.read(max(1, line.in_waiting))
                 *pieces, waiting = waiting[-_MOST_BYTES:].split(DELIMITER)
@@ -148,8 +148,8 @@ def identify(url: Url, timeout_s: float | None) -> Identity:
                     if named := _named(piece):
                         own = dataclasses.replace(url, target=port)
                         return Identity(_device_id(_usb_serial(port), port), *named, own)
-    except _GONE as error:
-        raise _port_error(port, error) from error
+    except GONE as error:
+        raise port_error(port, error) from error
     raise errors.LinkTimeout(f"{port}: no packet in {timeout_s:g} s. Is the firmware running?")
 
 
@@ -164,8 +164,13 @@ def _named(piece: bytes) -> tuple[str, int] | None:
     return f"{packet.design:04x}", 1
 
 
-def _line(url: Url) -> tuple[str, int]:
-    """Port and baud rate of an address."""
+def opened(port: str, baud: int, wait_s: float = _WAIT_S) -> Any:
+    """A port of this program alone; `wait_s` is the longest time of a read. Raises `GONE`."""
+    return serial.Serial(port, baud, timeout=wait_s, exclusive=True)
+
+
+def line_of(url: Url) -> tuple[str, int]:
+    """Port and baud rate of an address; errors as of `make`."""
     url.allow("baud")
     port = url.target
     if not port:
@@ -180,7 +185,8 @@ def _line(url: Url) -> tuple[str, int]:
     return port, int(url.number("baud", 115200, 1, 10_000_000))
 
 
-def _port_error(port: str, error: Exception) -> errors.LinkError:
+def port_error(port: str, error: Exception) -> errors.LinkError:
+    """What to do about a port that cannot be opened, or is gone."""
     code = getattr(error, "errno", None)
     there = ", ".join(str(p.device) for p in list_ports.comports()) or "none"
     if isinstance(error, FileNotFoundError) or code == errno.ENOENT:

@@ -12,12 +12,16 @@ import numpy as np
 import pytest
 
 from acceptance_frames import Bench, record
-from lumitip.acceptance.report import Circumstances, page
+from lumitip.acceptance.page import page
+from lumitip.acceptance.report import Circumstances
 from lumitip.acceptance.verdict import Judge
 from lumitip.calibration import Calibration
 from lumitip.cli import main
+from lumitip.commands import stage
 from lumitip.links import twin
 from lumitip.links.twin import Scene, packet_at, published_layout
+from lumitip.twin import Twin
+from printer_stand_in import StandIn
 
 LAYOUT = published_layout()
 
@@ -79,6 +83,79 @@ def test_an_emitter_that_is_not_plugged_in_gets_its_verdict(
     assert "of 255 in the empty grasp" in text, text
     report = json.loads((out / "acceptance.json").read_text())
     assert report["accepted"] is False
+
+
+class OnAPrinter(Hands):
+    """A builder who has the sheet on a printer's head, which hangs 4 degrees askew."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, bench: Bench, head: StandIn) -> None:
+        super().__init__(monkeypatch, bench)
+        self._head, self._twin = head, Twin(LAYOUT)
+        empty, sheet, _, *gauge = self._states
+        self._level = empty.mean(axis=0) / 255.0
+        self._states = [empty, sheet, empty, empty, *gauge]
+
+    def _packet(self, _: object, scene: Scene, first: int, count: int) -> object:
+        made = super()._packet(_, scene, first, count)
+        if len(self.asked) in (3, 4):  # each begins 3 mm beside the holes
+            across = len(self.asked) == 3
+            moved_mm = -self._head.place_mm["Z"] if across else self._head.place_mm["Y"]
+            reach_mm = max(LAYOUT.x_mm if across else LAYOUT.y_mm) + LAYOUT.optics.hole_mm / 2.0
+            way = (moved_mm - reach_mm - 3.0) * np.cos(np.radians(4.0))
+            light = self._twin.edges([way], [94.0 if across else 4.0]) * self._level
+            object.__setattr__(
+                made, "values", (255.0 - np.repeat(light, count, 0)).astype(np.uint8)
+            )
+        return made
+
+
+@pytest.mark.slow
+def test_a_printer_moves_the_sheet_and_the_report_says_how_exactly_it_is_found(
+    gauge_file: Path, tmp_path: Path, bench: Bench, monkeypatch, capsys
+) -> None:
+    monkeypatch.setattr(stage, "SETTLE_S", 0.01)
+    head = StandIn(tmp_path / "printer")
+    try:
+        hands = OnAPrinter(monkeypatch, bench, head)
+        out = tmp_path / "out"
+        named = ["--stage", f"serial://{tmp_path / 'printer'}", "Z-", "Y+"]
+        assert main([*arguments(gauge_file, out), *named]) == 0
+    finally:
+        head.close()
+    assert len(hands.asked) == 8
+    assert "mm along Z-, across the fingers, from one side, and back" in hands.asked[2]
+    assert "mm along Y+, along the fingers, from the tip, and back" in hands.asked[3]
+    assert head.place_mm == {"X": 0.0, "Y": 0.0, "Z": 0.0}, "it is back where it began"
+    report = json.loads((out / "acceptance.json").read_text())
+    assert [of["direction"] for of in report["traces"]] == ["Z-", "Y+"]
+    for of in report["traces"]:
+        assert of["places"] > 40
+        assert of["missed"] == 0
+        assert 0.0 < of["error_mm"] < 0.2
+        assert of["scale"] == pytest.approx(1.0, abs=0.02)
+    assert report["versions"]["printer"].startswith("Marlin 2.1")
+    assert {"moved_mm_0", "moved_mm_1"} <= set(report["frames"]["steps"])
+    printed = capsys.readouterr().out
+    for line in ("printer: Marlin 2.1", "the edge along Z-: error 0.", "along Y+: error 0."):
+        assert line in printed
+    assert "The edge on the positioning stage" in (out / "acceptance.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("named", "said"),
+    [
+        (["ble://Lumitip", "Z-", "Y+"], "one like serial:///dev/ttyUSB1 is needed"),
+        (["serial:///dev/none", "Z-", "Y"], "the direction 'Y'; an axis and a sign are needed"),
+        (["serial:///dev/none", "E-", "Y+"], "the direction 'E-'"),
+        (["serial:///dev/none", "Z-", "Z+"], "Z- and Z+; two different axes are needed"),
+    ],
+)
+def test_a_stage_that_cannot_be_used_is_refused_before_the_first_step(
+    gauge_file: Path, tmp_path: Path, capsys, named: list[str], said: str
+) -> None:
+    assert main([*arguments(gauge_file, tmp_path / "out"), "--stage", *named]) == 2
+    assert said in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.slow
@@ -247,7 +324,13 @@ def test_names_from_outside_are_no_markup(bench: Bench, judge: Judge) -> None:
     made = Circumstances("<b>&", "2026-11-27", "", {"lumitip": "<i>"})
     record = {
         **{"device_id": "<b>&", "date": made.date, "design_hash": "0", "deviations": {}},
-        **{"reference": None, "thicker_mm": None, "gauge_sha256": "", "frames": {"sha256": ""}},
+        **{
+            "traces": [],
+            "reference": None,
+            "thicker_mm": None,
+            "gauge_sha256": "",
+            "frames": {"sha256": ""},
+        },
         "versions": made.versions,
     }
     text = page(record, judged, LAYOUT)
