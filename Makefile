@@ -8,7 +8,7 @@ READOUT := .venv/.lumitip-readout
 DEV := .venv/.lumitip-dev
 DOCS := .venv/.lumitip-docs
 SITE := .venv/.lumitip-site
-BENCHES = fab boards estimation second_light pose_speed dead_cells published_law learning tolerance goals goals_search accept real_frame real_misfit processing protocol links twin environments mujoco view page watch acceptance corpus mutations
+BENCHES = fab boards estimation second_light pose_speed dead_cells published_law learning tolerance goals goals_search accept real_frame real_misfit processing protocol links twin environments policy mujoco view page watch acceptance corpus mutations
 CHECK = $(BIN)/lumitip-fab check --out "$(OUT)" --junit "$(OUT)/checks.xml" --report "$(OUT)/checks.json"
 
 .DEFAULT_GOAL := help

@@ -5,12 +5,13 @@ lies 0.1 mm beside its place. A calliper measures the silicone within 0.05 mm. A
 tolerance if a true deviation is beyond the limits of `lumitip.acceptance.findings`, injected or
 not. It is named rightly if all of its faults are found, at their cells, and the first finding is
 one of them. A fault that the finger's own spread brings back within the limit lies next to it: such
-fingers stand in a line of their own. The scattered share is
-compared with the mean of eight good fingers: the measured share with their measured one, the true
-share with their true one.
+fingers stand in a line of their own. The scattered share is compared with the mean of eight good
+fingers: the measured share with their measured one, the true share with their true one. `--alone`
+judges without such references, as of the first pair that anyone builds.
 
 These fingers are drawn with the rays that the verdict is built on. `--second N` tries good fingers
-of the second optical model instead (`second_light`), which shares nothing with them.
+of the second optical model instead (`second_light`), which shares nothing with them; three of them
+that were accepted are the references of the others.
 
 Run by `make bench`; exits 1 if a goal is missed.
 """
@@ -18,9 +19,11 @@ Run by `make bench`; exits 1 if a goal is missed.
 import argparse
 import sys
 from collections import Counter
+from collections.abc import Iterator
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import lru_cache, partial
+from itertools import count, islice
 from pathlib import Path
 
 import numpy as np
@@ -43,13 +46,20 @@ CAUGHT, FALSE = 95.0, 2.0
 GOOD = 8
 """Good fingers, whose mean scattered share is the reference."""
 PUBLISHED = Path(__file__).parents[1] / "design" / "presets" / "published.toml"
+GOOD_SECOND = 3
+"""The same of the second optical model: these are those that were accepted without a reference."""
 _REFERENCE_SEED = 10_000
 
 
 class Trials:
-    """Fingers of the published sensor, and their judge."""
+    """Fingers of the published sensor, and their judge.
 
-    def __init__(self) -> None:
+    Args:
+        alone: whether they are judged without a reference.
+        second: whether the fingers are those of the second optical model.
+    """
+
+    def __init__(self, alone: bool, second: bool) -> None:
         resolved = resolve(load(PUBLISHED))
         config, self.layout = resolved.config, resolved.design.layout
         [card] = resolved.design.gauge_cards
@@ -58,13 +68,26 @@ class Trials:
             self.layout, self.gauge, config.catalogue.tolerances, spreads(config)
         )
         self.judge = Judge(self.layout, self.gauge)
+        self._good_scatter = 0.0
+        self._reference: dict[str, float] | None = None
+        if not alone:
+            each = list(islice(self._accepted_second(), GOOD_SECOND)) if second else self._good()
+            self._reference = {name: float(np.mean([of[name] for of in each])) for name in each[0]}
+
+    def _good(self) -> list[dict[str, float]]:
+        """Measured deviations of good fingers."""
         good = self._workshop.draws(GOOD, _REFERENCE_SEED)
-        each = [
+        self._good_scatter = float(good["scatter"].mean())
+        return [
             self.judge(self._workshop.frames(good, number, Fault(), 0)).deviations
             for number in range(GOOD)
         ]
-        self._good_scatter = float(good["scatter"].mean())
-        self._reference = {name: float(np.mean([of[name] for of in each])) for name in each[0]}
+
+    def _accepted_second(self) -> Iterator[dict[str, float]]:
+        for seed in count(_REFERENCE_SEED):
+            verdict = self.judge(second_frames(self.layout, self.gauge, seed))
+            if verdict.accepted:
+                yield verdict.deviations
 
     def __call__(self, seed: int, number: int) -> "Tried":
         """A finger with or without a fault."""
@@ -79,7 +102,7 @@ class Trials:
 
     def second(self, seed: int, number: int) -> "Tried":
         """A good finger of the second optical model."""
-        verdict = self.judge(second_frames(self.layout, self.gauge, seed + number))
+        verdict = self.judge(second_frames(self.layout, self.gauge, seed + number), self._reference)
         return Tried.of(set(), Fault(), verdict)
 
 
@@ -111,20 +134,18 @@ class Tried:
         return cls(tuple(sorted(out)), tuple(alarms), fault.kind, every and first)
 
 
-@lru_cache(maxsize=1)
-def trials() -> Trials:
-    """Those of a process."""
-    return Trials()
+trials = lru_cache(maxsize=1)(Trials)
+"""Those of a process."""
 
 
-def tried(seed: int, number: int) -> Tried:
+def tried(alone: bool, seed: int, number: int) -> Tried:
     """A finger with or without a fault."""
-    return trials()(seed, number)
+    return trials(alone, False)(seed, number)
 
 
-def tried_second(seed: int, number: int) -> Tried:
+def tried_second(alone: bool, seed: int, number: int) -> Tried:
     """A good finger of the second optical model."""
-    return trials().second(seed, number)
+    return trials(alone, True).second(seed, number)
 
 
 def table(found: list[Tried], goals: Goals) -> None:
@@ -159,6 +180,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=1000, help="fingers")
     parser.add_argument("--second", type=int, default=0, help="fingers of the second model instead")
+    parser.add_argument("--alone", action="store_true", help="without good fingers to compare with")
     parser.add_argument("--seed", type=int, default=17)
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     options = parser.parse_args()
@@ -170,9 +192,9 @@ def main() -> int:
 
 
 def _all(pool: Executor, options: argparse.Namespace) -> list[Tried]:
-    count, one = (options.second, tried_second) if options.second else (options.count, tried)
-    chunk = max(1, min(20, count // (2 * options.jobs)))
-    return list(pool.map(partial(one, options.seed), range(count), chunksize=chunk))
+    number, one = (options.second, tried_second) if options.second else (options.count, tried)
+    chunk = max(1, min(20, number // (2 * options.jobs)))
+    return list(pool.map(partial(one, options.alone, options.seed), range(number), chunksize=chunk))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
-"""`lumitip twin` and `bench-tasks`: a simulated fingertip, and simulated tasks."""
+"""`lumitip twin`, `bench-tasks` and `train`: a simulated fingertip, simulated tasks, a policy."""
 
 import argparse
 import os
 from functools import partial
+from pathlib import Path
 
 from lumitip.commands.common import layout_path
 
@@ -49,3 +50,32 @@ def bench_tasks(options: argparse.Namespace) -> int:
     for met, goal in outcomes:
         print(f"{'met' if met else 'MISSED':<8}{goal}")
     return 0 if all(met for met, _ in outcomes) else 1
+
+
+def train(options: argparse.Namespace) -> int:
+    """Train a policy and write its file.
+
+    Raises:
+        LumitipError: if the file exists, or cannot be written.
+    """
+    from lumitip.errors import LumitipError
+    from lumitip.layout import Layout
+    from lumitip.links.twin import published_layout
+    from lumitip.tasks.training import train as run
+
+    file: Path = options.out or Path(f"{options.kind}.npz")
+    layout = Layout.load(options.layout) if options.layout else published_layout()
+    try:  # before the long training
+        file.touch(exist_ok=False)
+    except OSError as error:
+        raise LumitipError(
+            f"--out {file}: cannot be written as a new file: {error}. Choose another"
+        ) from error
+    try:
+        say = partial(print, flush=True)
+        run(layout, options.kind, options.seed, options.rate, say=say).save(file)
+    except BaseException:
+        file.unlink()
+        raise
+    print(file)
+    return 0

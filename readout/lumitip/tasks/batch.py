@@ -110,6 +110,16 @@ class TaskBatch:
         offset_mm, angle = self._tangent(self._all)
         return offset_mm / np.cos(angle), angle
 
+    def direction_ahead(self, ahead_mm: Floats) -> Numbers:
+        """Direction of each line a way further along it (rad), in the sensor frame, `(tasks,)`.
+
+        Args:
+            ahead_mm: the ways, shape `(tasks,)`.
+        """
+        at = np.minimum(self._at + np.round(ahead_mm / STEP_MM).astype(np.int64), self._last)
+        ahead: Floats = self._curve_heading[self._all, at] - self.pose[:, 2]
+        return ahead
+
     def _move(self, asked: Floats) -> None:
         dt_s, lag_s = 1.0 / self.settings.rate_hz, self.settings.lag_s
         self.pose, self._velocity = advance(self.pose, self._velocity, asked, dt_s, lag_s)
