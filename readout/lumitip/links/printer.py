@@ -93,8 +93,8 @@ class Printer:
         if abs(place_mm - needed_mm) > _NEAR_MM:
             raise PrinterError(
                 f"the printer's head is at {axis} {place_mm:.2f} mm; it was sent to "
-                f"{needed_mm:.2f} mm. Is that beyond its range? Begin further from the end of "
-                f"the axis"
+                f"{needed_mm:.2f} mm. Is that beyond its range? Home it, and begin further from "
+                "the end of the axis"
             )
 
     def place_mm(self, axis: str) -> float:
